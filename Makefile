@@ -105,10 +105,11 @@ docs:           ## build the site in .build/site/html, with the notebooks' outpu
 	@$(BIN)/autograder notebooks --released
 	$(BIN)/python -m pytest tests/browser/test_site.py $(PYTEST_ARGS)
 
-bench:          ## measure simulator, grader and builds, write .build/bench.json
+BENCH_ARGS ?=
+bench:          ## measure simulator, grader, checks and builds, write .build/bench.json (BENCH_ARGS=first_robots: set-up)
 	@$(BOOTSTRAP) --dev
 	@$(BIN)/pip install --quiet --no-deps --require-hashes -r requirements-bench.lock
-	@$(BIN)/python -m tests.benchmarks
+	@$(BIN)/python -m tests.benchmarks $(BENCH_ARGS)
 
 cluster:        ## set up, with Dask for `autograder grade --scheduler`
 	@$(BOOTSTRAP)

@@ -1,6 +1,6 @@
 """The autograder: visible checks for students, isolated grading for instructors.
 
-The command line is `autograder` (`autograder --help`); what notebooks import is `autograder.notebook`.
+The command line is `autograder` (see `autograder --help`). Notebooks import `autograder.notebook`.
 """
 
 __version__ = "0.2.0"

@@ -1,4 +1,4 @@
-"""`python -m autograder` is the command `autograder`."""
+"""Runs the command `autograder` as `python -m autograder`."""
 
 from autograder.cli import main
 

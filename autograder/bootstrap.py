@@ -45,7 +45,7 @@ class Interpreter:
     executable: str
     version: str  # such as 3.12
     build: str  # the complete version text
-    suffix: str  # of extension modules
+    suffix: str  # the suffix of extension modules
 
     @classmethod
     def running(cls) -> Interpreter:
@@ -104,7 +104,7 @@ def sourced_ros(environ: Mapping[str, str], venv: Path, interpreter: Interpreter
 
 
 def closed_to_other_users(python: Path, course: Path) -> str | None:
-    """Explain why other users cannot run the `.venv` of the folder `course`, with a remedy, or return None.
+    """Explain why other users cannot run `.venv` in the folder `course`, and name a remedy. If they can, return None.
 
     `python` is the base interpreter of the environment.
     """
@@ -170,7 +170,7 @@ class SetUp:
         return {"base": base, "project": project, **dev_part}
 
     def stamp(self) -> dict[str, str]:
-        """Return the stamp of the last finished set-up, empty if it or its Python does not exist."""
+        """Return the stamp of the last finished set-up. It is empty if the file or the Python of `.venv` is missing."""
         try:
             stamp = json.loads((self.venv / STAMP).read_text())
         except (OSError, ValueError):
@@ -183,9 +183,9 @@ class SetUp:
         return [name for name, key in self.expected_stamp(dev=dev).items() if stamp.get(name) != key]
 
     def make(self, *, dev: bool, real_launch: bool = False) -> None:
-        """Create the environment or its missing parts. The stamp is only written if every step succeeded.
+        """Create the environment or its missing parts. The stamp is written only if every step succeeds.
 
-        If the real launch cannot be installed, the stand-ins are used. With `real_launch`, that is a `SetUpError`.
+        If the real launch cannot be installed, the stand-ins are used. With `real_launch`, SetUpError is also raised.
         """
         missing = self.missing_parts(dev=dev)
         if not missing and not real_launch:
@@ -197,12 +197,12 @@ class SetUp:
         if "base" in missing or "dev" in missing:
             self._install("requirements-dev.lock" if dev else "requirements.lock")
         self._step("the ROS wheels could not be patched", self.python, "-m", "autograder.ros.patch_wheels")
-        # Before the project: its commands `ros2` and `launch_test`, which activate ROS first, must replace these.
+        # The project is installed later, because its commands `ros2` and `launch_test` must replace the real ones.
         launch = (self.python, "-m", "autograder.ros.real_launch", *(() if real_launch else ("--set-up",)))
-        launch_failed = not self.sourced and self.run(*launch) != 0  # a sourced ROS provides it
+        launch_failed = not self.sourced and self.run(*launch) != 0  # a sourced ROS has its own launch
         project = ("--no-build-isolation", "--no-deps", "-e", str(self.root))
         self._step("the project could not be installed", self.python, "-m", "pip", "install", "-qq", *project)
-        if not self.sourced:  # an installed ROS 2 provides them
+        if not self.sourced:  # a sourced ROS has its own interfaces of the tutorials
             tutorials = "autograder.building.interfaces.tutorials"
             self._step("the tutorials' interfaces were not built", self.python, "-m", tutorials)
         fresh = self.venv / f"{STAMP}.fresh"
@@ -225,7 +225,7 @@ class SetUp:
         bare = ["--without-pip"] if without_pip else []
         self._step("the virtual environment could not be created", base, "-m", "venv", *bare, str(self.venv))
         if without_pip:
-            # Debian ships Python without ensurepip. The system's pip then installs pip in the environment.
+            # Debian's Python has no ensurepip. In this case, the system's pip installs pip in the environment.
             site_packages = self.venv / "lib" / f"python{self.interpreter.version}" / "site-packages"
             problem = "neither ensurepip nor pip works for this Python: install python3-venv or python3-pip"
             self._step(problem, base, "-m", "pip", "install", "-qq", "--target", str(site_packages), "pip")
@@ -280,7 +280,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         apt += ["--browser"] if options.browser else []
         apt += ["--require-compiler"] if needs_set_up else []
         if run(*apt) != 0:
-            return 1  # the reason is printed
+            return 1  # apt.py has printed the reason
         if needs_set_up:
             if os.geteuid() == 0 and (problem := closed_to_other_users(Path(interpreter.executable), root)):
                 print_progress(problem)

@@ -2,8 +2,8 @@
 
 A course is a folder with a `course.yaml`. These are its keys with their defaults; only the first two are required:
 
-    name: my-course           its name for nbgrader
-    title: My course          its name for people
+    name: my-course           its name in nbgrader
+    title: My course          its title on pages
     chapters: chapters        a folder for each assignment, with a notebook of the same name
     solutions: solutions      the reference, a source tree of packages
     checks: checks            a package for each assignment, `chID`, with its checks
@@ -13,9 +13,9 @@ A course is a folder with a `course.yaml`. These are its keys with their default
     released: []              files that students get besides the released chapters, worlds and visible checks
     demo: ID                  the assignment that `autograder demo` shows; the first one by default
 
-A process works on one course: the one around the autograder, or the one that the environment variable
-AUTOGRADER_COURSE names, which `autograder --course FOLDER` sets. An autograder that was installed as a wheel has none
-around it, and takes the one around the working folder. The course is read when it is first needed, never by an import.
+A process works on one course. The environment variable AUTOGRADER_COURSE, which `autograder --course FOLDER` sets,
+names its folder. Without this variable, the course is the clone that contains the autograder; an autograder that was
+installed as a wheel uses the course that contains the working folder. `course.yaml` is read when it is first needed.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ import yaml
 
 from autograder.exceptions import UsageError
 
-ROOT = Path(__file__).resolve().parent.parent  # of the autograder and the simulator
+ROOT = Path(__file__).resolve().parent.parent  # the folder that contains the autograder and the simulator
 COURSE_FILE = "course.yaml"
 COURSE_VARIABLE = "AUTOGRADER_COURSE"
-SHARED_WORLDS = ROOT / "assets" / "worlds"  # those that come with the simulator
-# Ignores the files that tools create in a working folder; for `shutil.copytree`.
+SHARED_WORLDS = ROOT / "assets" / "worlds"  # the worlds that come with the simulator
+# For `shutil.copytree`: ignores the files that tools create in a working folder.
 NOT_COPIED = shutil.ignore_patterns("build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".*_cache")
 
 
 @dataclass(frozen=True)
 class Course:
-    """A course, as its `course.yaml` describes it. Paths are below its folder, `root`."""
+    """A course, as its `course.yaml` describes it. Paths are relative to its folder, `root`."""
 
     root: Path
     name: str
@@ -75,32 +75,37 @@ class Course:
         return course
 
     def shows_answers(self, part: str) -> bool:
-        """Return whether a path overlaps with files that students do not get. Files beside the chapters do not."""
-        shown, chapters = (self.root / part).resolve(), (self.root / self.chapters).resolve()
-        secrets = (chapters, *((self.root / name).resolve() for name in (self.solutions, self.checks, self.guide)))
-        beside = shown.parent == chapters and shown.suffix != ""
-        return not beside and any(shown.is_relative_to(s) or s.is_relative_to(shown) for s in secrets)
+        """Return whether a path overlaps with files that students must not get.
+
+        A file directly in the folder of chapters, such as a README, does not count as such a file.
+        """
+        path, chapters = (self.root / part).resolve(), (self.root / self.chapters).resolve()
+        secret_paths = (chapters, *((self.root / name).resolve() for name in (self.solutions, self.checks, self.guide)))
+        is_beside_chapters = path.parent == chapters and path.suffix != ""
+        return not is_beside_chapters and any(
+            path.is_relative_to(secret) or secret.is_relative_to(path) for secret in secret_paths
+        )
 
     @property
     def parts(self) -> tuple[str, ...]:
         """The paths of all parts of the course, including those that do not exist."""
-        named = (self.chapters, self.solutions, self.checks, self.worlds, self.syllabus, self.guide)
-        return (COURSE_FILE, *named, *self.released)
+        named_parts = (self.chapters, self.solutions, self.checks, self.worlds, self.syllabus, self.guide)
+        return (COURSE_FILE, *named_parts, *self.released)
 
 
-def _chosen() -> Path:
-    """Return the folder of the course; around the working folder, where the autograder alone was installed."""
-    around = (folder for folder in (ROOT, Path.cwd(), *Path.cwd().parents) if (folder / COURSE_FILE).is_file())
-    return Path(os.environ.get(COURSE_VARIABLE) or next(around, ROOT)).resolve()
+def _course_folder() -> Path:
+    """Return the folder of this process's course."""
+    candidates = (folder for folder in (ROOT, Path.cwd(), *Path.cwd().parents) if (folder / COURSE_FILE).is_file())
+    return Path(os.environ.get(COURSE_VARIABLE) or next(candidates, ROOT)).resolve()
 
 
 @cache
 def course() -> Course:
-    """Return the course of this process. Raises UsageError if none exists, or its file is invalid."""
-    chosen = Course.read(_chosen())
-    if chosen.root != ROOT:
-        os.environ[COURSE_VARIABLE] = str(chosen.root)  # child processes may have another working folder
-    return chosen
+    """Return the course of this process. Raises UsageError if no course exists, or its `course.yaml` is invalid."""
+    current_course = Course.read(_course_folder())
+    if current_course.root != ROOT:
+        os.environ[COURSE_VARIABLE] = str(current_course.root)  # child processes may have another working folder
+    return current_course
 
 
 def _folder(name: str) -> Path:
@@ -122,13 +127,13 @@ def __getattr__(name: str) -> Path:
 
 
 def check_folders() -> tuple[Path, ...]:
-    """Return the folders with checks, which every sandbox hides: the course's, and those around the autograder."""
-    around = ROOT / "autograder" / "checks"
-    return tuple(sorted({*around.glob("ch*")} | ({_folder("checks")} - {around})))
+    """Return the folders with checks of the course and of the autograder itself, all of which every sandbox hides."""
+    bundled_checks = ROOT / "autograder" / "checks"
+    return tuple(sorted({*bundled_checks.glob("ch*")} | ({_folder("checks")} - {bundled_checks})))
 
 
 def chapter(assignment: str) -> Path:
-    """Return an assignment's source folder; a UsageError lists the existing ones."""
+    """Return an assignment's source folder. Raises UsageError if the assignment does not exist."""
     folder = _folder("chapters") / assignment
     if "/" in assignment or not (folder / f"{assignment}.ipynb").is_file():
         raise UsageError(f"there is no assignment {assignment!r}; there are: {', '.join(assignments()) or 'none'}")
@@ -136,11 +141,13 @@ def chapter(assignment: str) -> Path:
 
 
 def world_path(name: str) -> Path:
-    """Return the path of a world of the course or of the simulator; a UsageError lists the existing ones."""
-    there = {path.stem: path for folder in (SHARED_WORLDS, _folder("worlds")) for path in sorted(folder.glob("*.yaml"))}
-    if name not in there:
-        raise UsageError(f"there is no world {name!r}; there are: {', '.join(sorted(there))}")
-    return there[name]
+    """Return the path of a world of the course or the simulator. Raises UsageError if the world does not exist."""
+    worlds = {
+        path.stem: path for folder in (SHARED_WORLDS, _folder("worlds")) for path in sorted(folder.glob("*.yaml"))
+    }
+    if name not in worlds:
+        raise UsageError(f"there is no world {name!r}; there are: {', '.join(sorted(worlds))}")
+    return worlds[name]
 
 
 def solution_path(package: str) -> Path:
@@ -159,5 +166,5 @@ def source_notebook(assignment: str) -> Path:
 
 
 def hidden_titles(assignment: str) -> Path:
-    """Return the file with the titles of an assignment's hidden checks that students may read."""
+    """Return the path of the file with the titles of an assignment's hidden checks, which students may read."""
     return _folder("checks") / f"ch{assignment}" / "visible" / "hidden_titles.json"

@@ -7,8 +7,8 @@ from enum import Enum
 
 from autograder.plain_text import shorten
 
-MAX_SENTENCE = 4_000  # characters of a sentence for the student, which may quote a program
-MAX_DETAIL = 16_000  # characters of lines of its output
+MAX_SENTENCE = 4_000  # characters; a sentence may quote what a program printed
+MAX_DETAIL = 16_000  # characters; longer output is shortened
 
 
 class Kind(str, Enum):
@@ -40,7 +40,7 @@ class Kind(str, Enum):
     NOT_GRADED = "not_graded"
 
 
-# Hints for a program that crashed, independent of the check that ran at that time.
+# Hints for a program that crashed. They do not depend on the check that ran at that time.
 HINTS = {
     kind: ("Read the traceback from its last line upwards. The first line that names a file of yours says where.",)
     for kind in (Kind.SYNTAX_ERROR, Kind.CRASHED_AT_IMPORT, Kind.CRASHED_AT_START, Kind.CRASHED_LATER)
@@ -51,7 +51,8 @@ HINTS = {
 class Diagnosis:
     """The outcome of reading, building and starting one submission, and advice for the student.
 
-    `detail` is relevant lines of output or traceback. It may be empty. Both are shortened here if they are too long.
+    `detail` contains the relevant lines of output or of a traceback. It may be empty. Texts that are too long are
+    shortened.
     """
 
     kind: Kind
@@ -64,7 +65,7 @@ class Diagnosis:
 
     @property
     def hints(self) -> tuple[str, ...]:
-        """Hints for the student, one after the other. Most sentences already say what to do."""
+        """Hints for the student, in order. Most diagnoses have none, because their sentence already says what to do."""
         return HINTS.get(self.kind, ())
 
 

@@ -5,10 +5,10 @@ AutograderError
 ├── StudentError        the submission is wrong; it gets a diagnosis                            (points are lost)
 └── GraderError         the grader or the machine failed; this is never a zero                  ("not graded")
     ├── DoubtfulError   a program or the machine failed                                         (tried again)
-    └── IsolationError  this machine cannot isolate a submission as asked
+    └── IsolationError  this machine cannot isolate a submission as requested
 
-A check's verdict, `checks.CheckFailed`, is an AutograderError, too. `reading` turns any other exception into a
-StudentError where data of the student's are read.
+`autograder.suite.CheckFailed`, a check's verdict, is also an AutograderError. `autograder.submission.reading` turns any
+other exception into a StudentError while the student's data are read.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class UsageError(AutograderError):
 
 
 class StudentError(AutograderError):
-    """The submission is wrong, and the student can correct it: `diagnosis` says how."""
+    """The submission is wrong. `diagnosis` tells the student how to correct it."""
 
     def __init__(self, diagnosis: Diagnosis) -> None:
         super().__init__(diagnosis.sentence)
@@ -39,7 +39,7 @@ class GraderError(AutograderError):
 class DoubtfulError(GraderError):
     """A program or the machine failed, and it is unclear which. The grading is repeated.
 
-    In the last try it counts as the program's fault, with this diagnosis: the machine is unlikely to fail again.
+    In the last attempt, the program is blamed, with this diagnosis: the machine is unlikely to fail each time.
     """
 
     def __init__(self, diagnosis: Diagnosis) -> None:

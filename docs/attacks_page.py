@@ -1,4 +1,4 @@
-"""The page `attacks.md`, from `attacks.yaml`."""
+"""The page `attacks.md`, generated from `attacks.yaml`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROWS: list[dict[str, Any]] = yaml.safe_load((ROOT / "docs" / "attacks.yaml").rea
 HEAD = """# Attacks and their tests
 
 This page lists what a malicious submission can try. The verification grades submissions that try it, and tests try it
-on single parts. `make docs` writes this page from `docs/attacks.yaml`.
+on single parts of the grader. `make docs` writes this page from `docs/attacks.yaml`.
 """
 OPEN = """
 ## Not blocked
@@ -31,8 +31,8 @@ OPEN = """
 
 
 def current() -> str:
-    """Return the page."""
-    described = [
+    """Return the page as Markdown."""
+    submission_rows = [
         (attack.id, assignment, attack.description)
         for assignment in suites.graded_assignments()
         for attack in attacks(assignment)
@@ -46,12 +46,12 @@ def current() -> str:
             HEAD,
             *table(("#", "attack", "submissions of the verification", "tests"), rows),
             "## The submissions\n",
-            *table(("name", "chapter", "what it tries"), described),
+            *table(("name", "chapter", "what it tries"), submission_rows),
             OPEN.strip() + "\n",
         ]
     )
 
 
 def _tests(files: dict[str, list[str]]) -> str:
-    names = (name.removeprefix("test_") for named in files.values() for name in named)
+    names = (name.removeprefix("test_") for tests in files.values() for name in tests)
     return "; ".join(name.replace("_s_", "'s ").replace("_", " ") for name in names)

@@ -2,7 +2,7 @@
 
 Some pages are generated: the chapters as students get them, with the outputs of their last run in .build/notebooks, the
 run on the start page, the table of the verification, and the pages of the modules named *_page.py. The environment
-variable SITE_ADDRESS is the address of the site, which previews of its links need.
+variable SITE_ADDRESS contains the address of the site, which previews of its links need.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ OTHER_PAGES = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "chapters/ros2-
 ROBOT = course_paths.ROOT / "assets" / "figures" / "robot.png"
 EXAMPLE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 ENTRY = re.compile(r"^(?P<words>[^\n:]+)\n: (?P<text>.+(?:\n  .+)*)", re.MULTILINE)
-# Code, headings, links and pictures, tables, choices of a question, tags.
+# Parts of a page without prose: code, headings, links and pictures, tables, choices of a question, tags.
 NOT_PROSE = re.compile(
     r"^(?P<fence>```|~~~).*?^(?P=fence)|`[^`]*`|^#.*?$|!?\[[^\]]*\]\([^)]*\)|^\|.*?$|^- \w\) .*?$|<[^>]*>",
     re.MULTILINE | re.DOTALL,
@@ -65,10 +65,10 @@ NOT_LINKED_ON = {"04_launch": {"Action"}, "05_parameters": {"Action"}, "students
 
 
 def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
-    """Write the sources of the site and run Sphinx, for which a warning is an error. The site is in `HTML`.
+    """Write the sources of the site and run Sphinx, with warnings as errors. The site is in `HTML`.
 
     Args:
-        screenshots: folder with the pictures that the guides show.
+        screenshots: the folder with the pictures that the guides show.
     """
     shutil.rmtree(SITE, ignore_errors=True)
     shutil.copytree(DOCS, SOURCE, ignore=shutil.ignore_patterns(*NOT_COPIED))
@@ -83,8 +83,8 @@ def build(screenshots: Path) -> subprocess.CompletedProcess[str]:
     words = write_glossary(SOURCE / "glossary.md")
     for name in GUIDES:
         guide = SOURCE / name
-        (linked,) = link_first_uses([guide.read_text(encoding="utf-8")], linked_terms(words, guide.stem))
-        guide.write_text(linked, encoding="utf-8")
+        (linked_text,) = link_first_uses([guide.read_text(encoding="utf-8")], linked_terms(words, guide.stem))
+        guide.write_text(linked_text, encoding="utf-8")
     shutil.copytree(screenshots, SOURCE / "made")
     (SOURCE / "chapters").mkdir()
     for chapter in chapters():
@@ -116,27 +116,27 @@ def linked_terms(words: frozenset[str], page: str) -> set[str]:
 
 
 def link_first_uses(texts: Sequence[str], words: set[str]) -> list[str]:
-    """Return a page's texts. The first use of each word in prose is a link to the glossary."""
-    linked = []
+    """Return a page's texts, in which the first use of each word in prose is a link to the glossary."""
+    linked_texts = []
     for text in texts:
         for word in sorted(words, key=len, reverse=True):
-            excluded = [match.span() for match in NOT_PROSE.finditer(text)]
+            excluded_spans = [match.span() for match in NOT_PROSE.finditer(text)]
             pattern = r"\s+".join(map(re.escape, word.split()))
             for occurrence in re.finditer(rf"\b{pattern}s?\b", text, re.IGNORECASE):
-                if not any(occurrence.start() < stop and start < occurrence.end() for start, stop in excluded):
+                if not any(occurrence.start() < stop and start < occurrence.end() for start, stop in excluded_spans):
                     text_of_link = " ".join(occurrence[0].split())
                     text = f"{text[: occurrence.start()]}{{term}}`{text_of_link} <{word}>`{text[occurrence.end() :]}"
                     words = words - {word}
                     break
-        linked.append(text)
-    return linked
+        linked_texts.append(text)
+    return linked_texts
 
 
 def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozenset()) -> None:
     """Write a chapter's notebook as students get it, with the outputs of its last run unless it has changed since.
 
-    Its title begins with its number. Below it is a link to the notebook itself, in the folder `notebooks` beside
-    `folder`. The first use of each of the words is a link to the glossary.
+    The title begins with the chapter's number. Below the title is a link to the notebook itself, in the folder
+    `notebooks` beside `folder`. The first use of each of the words is a link to the glossary.
     """
     notebook = in_form(chapter.read(), Form.RELEASED)
     downloads = folder.parent / "notebooks"
@@ -144,12 +144,12 @@ def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozen
     nbformat.write(notebook, downloads / chapter.notebook_path.name)
     report = course_paths.BUILD / "notebooks" / f"{chapter.assignment}-{Form.RELEASED.value}.ipynb"
     if report.is_file():
-        executed = nbformat.read(report, as_version=nbformat.NO_CONVERT)
-        if [cell.source for cell in executed.cells] == [cell.source for cell in notebook.cells]:
-            notebook = executed
+        executed_notebook = nbformat.read(report, as_version=nbformat.NO_CONVERT)
+        if [cell.source for cell in executed_notebook.cells] == [cell.source for cell in notebook.cells]:
+            notebook = executed_notebook
     prose = [cell for cell in notebook.cells if cell.cell_type == "markdown"]
-    linked = link_first_uses([cell.source for cell in prose], linked_terms(words, chapter.assignment))
-    for cell, text in zip(prose, linked, strict=True):
+    linked_texts = link_first_uses([cell.source for cell in prose], linked_terms(words, chapter.assignment))
+    for cell, text in zip(prose, linked_texts, strict=True):
         cell.source = text
     if prose:
         prose[0].source = with_number(prose[0].source, chapter.assignment)
@@ -161,13 +161,13 @@ def write_chapter(chapter: Chapter, folder: Path, words: frozenset[str] = frozen
 def with_number(text: str, assignment: str) -> str:
     """Return the first cell of a chapter with the chapter's number in its title, and a link to its notebook below."""
     title, _, rest = text.partition("\n")
-    numbered = title.replace("# ", f"# {int(assignment.partition('_')[0])}. ", 1)
+    numbered_title = title.replace("# ", f"# {int(assignment.partition('_')[0])}. ", 1)
     link = f"{{download}}`Download the notebook <../notebooks/{assignment}.ipynb>`"
-    return f"{numbered}\n\n{link}. It runs in the [folder of the course](../students.md).\n{rest}"
+    return f"{numbered_title}\n\n{link}. It runs in the [folder of the course](../students.md).\n{rest}"
 
 
 def verification_table() -> str:
-    """Return the numbers of test cases of each suite, as a Markdown table."""
+    """Return a Markdown table with the numbers of test cases for each suite."""
     rows = []
     for name in suites.graded_assignments():
         suite = suites.hidden(name)
@@ -185,7 +185,7 @@ def write_run(path: Path) -> None:
 
 
 def write_preview(path: Path) -> None:
-    """Draw the preview of links to the site: 1200 x 630 pixels with the title and the README's robot."""
+    """Draw the picture that previews of links show: 1200 x 630 pixels with the title and the README's robot."""
     robot = imread(ROBOT)
     figure = Figure(figsize=(12.0, 6.3), facecolor="white")
     figure.figimage(robot, 1200 - robot.shape[1] - 24, (630 - robot.shape[0]) // 2)

@@ -43,27 +43,28 @@ nb_merge_streams = True
 suppress_warnings = ["misc.highlighting_failure"]
 
 autodoc_member_order = "bysource"
-default_role = "code"  # of `names` in docstrings
+default_role = "code"  # for `names` in docstrings
 napoleon_use_ivar = True  # one line for each attribute
 
 
 def fix_accessibility(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:
-    """Give captions of the navigation a level, and make code that is wider than its box reachable by keyboard."""
+    """Give navigation captions a heading level, and make code and wide tables reachable by keyboard."""
     if "furo_navigation_tree" in context:
         context["furo_navigation_tree"] = context["furo_navigation_tree"].replace(
             'role="heading"', 'role="heading" aria-level="2"'
         )
     if "body" in context:
-        context["body"] = context["body"].replace("<pre>", '<pre tabindex="0">')
+        body = context["body"].replace("<pre>", '<pre tabindex="0">')
+        context["body"] = body.replace('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper')
 
 
 def keep_first_colon(app: Sphinx, kind: str, name: str, subject: object, options: object, lines: list[str]) -> None:
-    """Begin a property's docstring with an empty comment. Otherwise napoleon reads text before a colon as its type."""
+    """Begin a property's docstring with an empty comment. Otherwise, napoleon reads text before a colon as a type."""
     if kind in ("property", "attribute"):
         lines[:0] = ["..", ""]
 
 
 def setup(app: Sphinx) -> None:
-    """Connect the functions of this file: the first before napoleon, the second after the theme."""
+    """Let `keep_first_colon` run before napoleon, and `fix_accessibility` after the theme."""
     app.connect("autodoc-process-docstring", keep_first_colon, priority=400)
     app.connect("html-page-context", fix_accessibility, priority=900)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from autograder.author.course.markdown_table import table
+from autograder.building.bundle_server import CACHE
 from autograder.building.interfaces.cache import LIMIT
-from autograder.building.keeper import CACHE
 from autograder.diagnosis import MAX_DETAIL, MAX_SENTENCE
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, RESULT_VALUES, RUN_VALUES
 from autograder.grade.executed_notebook import MAX_BYTES
-from autograder.grade.reply import MAX_RESULT, MAX_SHOWN
+from autograder.grade.reply import MAX_PAGE, MAX_RESULT
 from autograder.harness.launch import MAX_STATUS
 from autograder.plain_text import MAX_NAME, MAX_NAMES
 from autograder.probes.imports import MAX_ALL_BYTES
 from autograder.probes.student_test_reports import MAX_SOURCES
 from autograder.run.fork_server import seccomp
 from autograder.run.lockstep.protocol import MAX_LINE
-from autograder.run.patience import HELD_SECONDS
+from autograder.run.patience import MAX_ANSWER_SECONDS
 from autograder.run.sandbox import limits
 from autograder.run.sandbox.limits import MIB, TreeLimits
 from autograder.submission.intake.files import MAX_FILES, MAX_READ_BYTES, MAX_TOTAL_BYTES
@@ -36,14 +36,16 @@ ANSWER, WORKER_BOUNDS = "test_reply", "test_worker_sandbox_bounds"
 
 
 def current() -> str:
-    """Return the page."""
+    """Return the page as Markdown."""
     return "\n".join([HEAD, *table(("resource", "limit", "enforced by", "test"), list(rows())), FOOT.strip() + "\n"])
 
 
 def rows() -> list[tuple[str, str, str, str]]:
     """Return the rows: the resource, its limit, how it is enforced, and the file that tests it."""
     node, build, worker = limits.NODE, limits.BUILD, limits.GRADING_WORKER
-    forbidden = ", ".join(name for name in seccomp.FORBIDDEN if name in ("memfd_create", "shmget", "msgget", "add_key"))
+    forbidden_calls = ", ".join(
+        name for name in seccomp.FORBIDDEN if name in ("memfd_create", "shmget", "msgget", "add_key")
+    )
     return [
         (
             "wall time of a submission",
@@ -51,7 +53,7 @@ def rows() -> list[tuple[str, str, str, str]]:
             "the process that starts the worker",
             "test_time_budget",
         ),
-        ("waiting for its nodes' answers", f"{HELD_SECONDS:.0f} s in all", "the worker", "test_patience"),
+        ("waiting for its nodes' answers", f"{MAX_ANSWER_SECONDS:.0f} s in all", "the worker", "test_patience"),
         (
             "wall time of a build; of a node",
             f"{build.wall_seconds:.0f} s; {node.wall_seconds:.0f} s",
@@ -86,7 +88,7 @@ def rows() -> list[tuple[str, str, str, str]]:
             SANDBOX,
         ),
         ("queued signals", f"{limits.SIGNALS}", "the kernel", ARGUMENTS),
-        ("keys, queues, segments, files in memory", "none", f"a system call filter ({forbidden}, …)", SANDBOX),
+        ("keys, queues, segments, files in memory", "none", f"a system call filter ({forbidden_calls}, …)", SANDBOX),
         ("size of a file; new files", f"{_mib(node.file_size)}; {node.files:,}", "the kernel; a watcher", SANDBOX),
         ("/tmp and /dev/shm of a program", _mib(node.scratch), "a file system in memory", SANDBOX),
         ("a worker sandbox's scratch folder", _mib(limits.WORKER_SCRATCH), "a file system in memory", ARGUMENTS),
@@ -116,7 +118,7 @@ def rows() -> list[tuple[str, str, str, str]]:
         ),
         (
             "messages from the topics of a run",
-            f"{limits.RECEIVED.messages:,}; {_mib(limits.RECEIVED.size)}",
+            f"{limits.RECEIVED_MESSAGES.messages:,}; {_mib(limits.RECEIVED_MESSAGES.size)}",
             "the worker, before it parses one",
             "test_inflow",
         ),
@@ -150,7 +152,7 @@ def rows() -> list[tuple[str, str, str, str]]:
         ("Python that is parsed for its imports", f"{_mib(MAX_ALL_BYTES)} in a package", "the worker", "test_imports"),
         ("tests that are parsed for their names", _mib(MAX_SOURCES), "the worker", "test_student_test_reports"),
         ("an executed notebook", f"{_mib(MAX_BYTES)}, or it has no outputs", "the worker", ANSWER),
-        ("pictures and runs on a page", _mib(MAX_SHOWN), "the process that starts the worker", ANSWER),
+        ("pictures and runs on a page", _mib(MAX_PAGE), "the process that starts the worker", ANSWER),
     ]
 
 

@@ -55,9 +55,10 @@ subscribers communicate.
 TUTORIAL_HEAD = f"""## The ROS tutorials
 
 `make tutorials` executes the Python tutorials in {ROS.title}'s documentation, in "Beginner: Client libraries" and
-"Intermediate: Launch". It takes commands, code and file changes from the pages, and compares the output with the pages.
-`make tutorials PYTEST_ARGS="-k NAME"` executes one of them. turtlesim and `demo_nodes_cpp` are written in C++ and have
-no wheels. The tests use Python packages with the same names, topics, services and parameters.
+"Intermediate: Launch". It takes commands, code and file changes from the pages. `tests/e2e/tutorials/pages.yaml` says
+what each command prints. `make tutorials PYTEST_ARGS="-k NAME"` executes one of them. turtlesim and `demo_nodes_cpp`
+are written in C++ and have no wheels. The tests use Python packages with the same names, topics, services and
+parameters.
 """
 TUTORIAL_COLUMNS = ("tutorial", "runs as printed", "NAME of its test", "omitted parts, or why it does not run")
 REAL_LAUNCH = """
@@ -96,14 +97,14 @@ UNCOVERED = ("not covered", "reason", "error message")
 COMPOSABLE = "they are C++ components, and `composition_interfaces` has no wheel"
 INTERNAL = "neither the course nor a Python tutorial of ROS uses it"
 INTERNAL_MODULE = "it is internal to the real package"
-OF_CPP = "it is for C++"
-SINGLE = "it is for tests of one process without a launch description"
+FOR_CPP = "it is for C++"
+FOR_ONE_PROCESS = "it is for tests of one process without a launch description"
 LAUNCH = {
     "launch_ros.actions.ComposableNodeContainer": COMPOSABLE,
     "launch_ros.actions.LoadComposableNodes": COMPOSABLE,
     "launch_ros.descriptions.ComposableNode": COMPOSABLE,
-    "launch_testing.actions.GTest": OF_CPP,
-    "launch_testing.tools.launch_process": SINGLE,
+    "launch_testing.actions.GTest": FOR_CPP,
+    "launch_testing.tools.launch_process": FOR_ONE_PROCESS,
 }
 INTERNAL_NAMES = {
     "launch": "SomeEntitiesType_types_tuple",
@@ -155,10 +156,10 @@ def platform_page(lock: str, tutorials: str) -> str:
         lock: the text of `requirements.lock`.
         tutorials: the text of `pages.yaml`, from which the tutorials are tested.
     """
-    by_python = {python: locked(lock, python) for python in PYTHONS}
-    versions = table(COLUMNS, (_row(package, by_python) for package in ROS.packages))
+    versions_by_python = {python: locked(lock, python) for python in PYTHONS}
+    versions = table(COLUMNS, (_row(package, versions_by_python) for package in ROS.packages))
     pages = table(TUTORIAL_COLUMNS, map(_tutorial, yaml.safe_load(tutorials)))
-    stand_ins = [STAND_INS, *table(UNCOVERED, _uncovered()), DIFFERENT, *table(DIFFERENT_COLUMNS, _differences())]
+    stand_ins = [STAND_INS, *table(UNCOVERED, _uncovered_rows()), DIFFERENT, *table(DIFFERENT_COLUMNS, _differences())]
     real_launch = REAL_LAUNCH.format(sources="\n".join(map(_source, SOURCES)))
     return "\n".join([HEAD, *versions, TAIL, TUTORIAL_HEAD, *pages, real_launch, *stand_ins])
 
@@ -180,7 +181,7 @@ def locked(lock: str, python: str) -> dict[str, str]:
     Raises:
         InvalidRequirement: a line is not a requirement.
     """
-    return {pinned.name: next(iter(pinned.specifier)).version for pinned in _requirements(lock, python)}
+    return {requirement.name: next(iter(requirement.specifier)).version for requirement in _requirements(lock, python)}
 
 
 def _requirements(lock: str, python: str) -> Iterator[Requirement]:
@@ -199,7 +200,7 @@ def _tutorial(page: dict[str, Any]) -> tuple[str, str, str, str]:
     return link, "yes", f"`{page['name']}`", page.get("but", "")
 
 
-def _uncovered() -> Iterator[tuple[str, str, str]]:
+def _uncovered_rows() -> Iterator[tuple[str, str, str]]:
     def error(name: str) -> str:
         return f"'{name}' is not covered: this is the course's stand-in …"
 
@@ -215,14 +216,14 @@ def _uncovered() -> Iterator[tuple[str, str, str]]:
     assert match
     for reason, parts in ((INTERNAL_MODULE, ast.literal_eval(match[1])), (INTERNAL, INTERNAL_NAMES)):
         for parent, names in parts.items():
-            full = [f"{parent}.{name}" for name in names.split()]
-            yield ", ".join(f"`{name}`" for name in full), reason, error(full[0])
+            full_names = [f"{parent}.{name}" for name in names.split()]
+            yield ", ".join(f"`{name}`" for name in full_names), reason, error(full_names[0])
     for option in ("--node-name", "--library-name"):
         command = f"`ros2 pkg create --build-type ament_cmake {option}`"
-        yield command, OF_CPP, f"{command}, a C++ package, is not covered by this stand-in …"
+        yield command, FOR_CPP, f"{command}, a C++ package, is not covered by this stand-in …"
     for word, group in COMMANDS.items():
-        missing = [f"ros2 {word} {verb}" for verb in group.not_covered] if group.module else [f"ros2 {word}"]
-        for command in missing:
+        missing_commands = [f"ros2 {word} {verb}" for verb in group.not_covered] if group.module else [f"ros2 {word}"]
+        for command in missing_commands:
             message = str(NotCoveredError(f"`{command}`")).partition(";")[0]
             yield f"`{command}`", "the course does not use it", f"{message} …"
 
@@ -232,15 +233,15 @@ def _differences() -> Iterator[tuple[str, str]]:
         yield f"`{test.partition('[')[0]}`", reason
 
 
-def _row(package: PlatformPackage, by_python: dict[str, dict[str, str]]) -> tuple[str, ...]:
+def _row(package: PlatformPackage, versions_by_python: dict[str, dict[str, str]]) -> tuple[str, ...]:
     by_version: dict[str, list[str]] = {}
-    for python, versions in by_python.items():
+    for python, versions in versions_by_python.items():
         by_version.setdefault(versions[package.name], []).append(python)
-    installed = "; ".join(
+    installed_versions = "; ".join(
         version if len(pythons) == len(PYTHONS) else f"{version} (Python {_span(pythons)})"
         for version, pythons in by_version.items()
     )
-    return package.name, package.debian, package.version, installed, package.meets, package.differs
+    return package.name, package.debian, package.version, installed_versions, package.meets, package.differs
 
 
 def _span(pythons: list[str]) -> str:

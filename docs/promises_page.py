@@ -7,6 +7,7 @@ docs/promises_page.py` prints the page.
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 import runpy
 from collections.abc import Iterator
@@ -21,14 +22,43 @@ PAGES = (
     *(f"docs/{name}.md" for name in ("index", "students", "instructors", "authors", "first_check", "troubleshooting")),
     *(f"docs/{name}.md" for name in ("first_launch_check", "lms", "jupyterhub", "cluster", "platform", "limits")),
 )
+# The files with the only test of a promise, if `make test` omits it: the command that runs it, and the reason.
+NIGHTLY_ONLY = {
+    "tests/e2e/test_hub_guide.py": (
+        "make nightly",
+        "As root, it adds users to the machine, and installs the course twice from the network. `make test` lets a "
+        "class work on a trial hub: `tests/e2e/test_hub.py`.",
+    ),
+    "tests/e2e/test_image.py": (
+        "make nightly",
+        "As root, it builds an image, and a system for Gradescope, from the network, which takes minutes. `make test` "
+        "runs the image's scripts and entry point, and Gradescope's `run_autograder`, on the machine itself.",
+    ),
+    "tests/e2e/test_public_packages.py": (
+        "make public-packages",
+        "It needs clones of ros2/examples and ros2/demos, which the command makes. `make nightly` skips it without "
+        "them.",
+    ),
+    "tests/e2e/test_tutorials.py": (
+        "make tutorials",
+        "It needs a clone of ROS's documentation, which the command makes. `make nightly` skips it without one. `make "
+        "test` follows a small page in the same way.",
+    ),
+}
 HEAD = """# Promises and their tests
 
 This page lists the promises of the README and the guides, and the tests that verify them. `make nightly` runs the tests
-marked as nightly, and `make test` runs all others. The pages about attacks and limits name their tests themselves.
+marked as nightly, and `make test` runs all others. The column *run by* says which promises only a nightly test
+verifies. The pages about attacks and limits name their tests themselves.
+
+## Promises that only nightly tests verify
+
+`make test` neither needs a clone of another repository nor installs the course a second time. A promise about these has
+only a nightly test, in one of these files:
 """
 # Figures that `make bench` measures are not promises.
 COMMAND = r"(?:\.venv/bin/)?(?:autograder|make|nbgrader|dask|pip)\b(?!/| bench\b)|eval \""
-# A sentence or a row of a table needs a test if it has a command, an option or an exit status, or says "never".
+# A sentence or a table row needs a test if it contains a command, an option, an exit status or the word "never".
 PROMISING = re.compile(rf"(?:^|`)(?:{COMMAND})|`--[a-z]|\bexit status\b|\bends with (?:status )?1\b|\bnever\b")
 BLOCK = re.compile(r"^```(?P<kind>\w*).*?\n(?P<text>.*?)^```\n?", re.MULTILINE | re.DOTALL)
 SENTENCE = re.compile(r"(?<!^\d\.)(?<=[.?!])\s+(?=[A-Z`\"\[])")
@@ -39,7 +69,7 @@ MARKUP = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|^(?:-|\d\.) ")
 
 @dataclass(frozen=True)
 class Promise:
-    """Words of a page, and the test that verifies them, as `file::name`."""
+    """Words of a page, and the test (`file::name`) that verifies them."""
 
     words: str
     test: str
@@ -94,31 +124,54 @@ def _promises_of(path: Path, tree: ast.Module) -> Iterator[Promise]:
         for node in tree.body
     )
     for function in (node for node in tree.body if isinstance(node, ast.FunctionDef)):
-        marks = [ast.unparse(decorator) for decorator in function.decorator_list]
-        is_nightly = module_is_nightly or "pytest.mark.nightly" in marks
+        decorators = [ast.unparse(decorator) for decorator in function.decorator_list]
+        is_nightly = module_is_nightly or "pytest.mark.nightly" in decorators
         for decorator in function.decorator_list:
             if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "pytest.mark.promise":
                 for words in decorator.args:
                     yield Promise(ast.literal_eval(words), f"{path.as_posix()}::{function.name}", is_nightly)
 
 
-def current() -> str:
-    """Return the page."""
+def verified() -> Iterator[tuple[str, str, list[Promise]]]:
+    """Yield each page's name, each of its sentences that has tests, and the promises in the markers of these tests."""
     all_promises = list(promises())
-    parts = [HEAD]
     for page, text in texts().items():
-        rows = []
         for sentence in sentences(text):
-            tests = [
-                f"`{promise.test}`" + " (nightly)" * promise.is_nightly
-                for promise in all_promises
-                if promise.words in sentence
-            ]
-            if tests:
-                sentence_text = MARKUP.sub(r"\1", sentence.strip("| ")).replace("|", "·")
-                rows.append((sentence_text, "; ".join(sorted(set(tests)))))
-        parts += [f"## {page}\n", *table(("promise", "verified by"), rows)]
+            if matches := [promise for promise in all_promises if promise.words in sentence]:
+                yield page, sentence, matches
+
+
+def nightly_only() -> set[str]:
+    """Return the tests of the sentences that no test in `make test` verifies."""
+    return {
+        promise.test for *_, matches in verified() if all(each.is_nightly for each in matches) for promise in matches
+    }
+
+
+def current() -> str:
+    """Return the page as Markdown."""
+    parts = [HEAD, *table(("tests", "run by", "reason"), map(_nightly_row, NIGHTLY_ONLY))]
+    for page, group in itertools.groupby(verified(), key=lambda each: each[0]):
+        rows = []
+        for _, sentence, matches in group:
+            sentence_text = MARKUP.sub(r"\1", sentence.strip("| ")).replace("|", "·")
+            tests = {f"`{promise.test}`" + " (nightly)" * promise.is_nightly for promise in matches}
+            rows.append((sentence_text, "; ".join(sorted(tests)), _commands(matches)))
+        parts += [f"## {page}\n", *table(("promise", "verified by", "run by"), rows)]
     return "\n".join(parts)
+
+
+def _nightly_row(file: str) -> tuple[str, str, str]:
+    command, reason = NIGHTLY_ONLY[file]
+    return f"`{file}`", f"`{command}`", reason
+
+
+def _commands(matches: list[Promise]) -> str:
+    """Return the commands that run the tests of a sentence; `make test` is enough if it runs one of them."""
+    if not all(promise.is_nightly for promise in matches):
+        return "`make test`"
+    files = {promise.test.partition("::")[0] for promise in matches}
+    return ", ".join(sorted({f"`{NIGHTLY_ONLY[file][0]}`" for file in files}))
 
 
 def _on_one_line(text: str) -> str:

@@ -1,4 +1,4 @@
-"""A 2D lidar simulator: an exact, pure core that steps robots through a world of walls.
+"""A 2D lidar simulator. Pure functions move robots through a world of walls, and compute exact scans.
 
 >>> from sim import Command, Simulation, World, box, observe, start, step
 >>> simulation = Simulation(World.from_segments(box(4.0, 3.0)))

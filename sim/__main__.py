@@ -1,4 +1,4 @@
-"""The simulator's command line: `python -m sim WORLD` starts it as a ROS 2 node; the other verbs draw and export."""
+"""The simulator's command line. `python -m sim WORLD` starts it as a ROS 2 node; other commands draw and export."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from sim.maps import load
 from sim.recording import load_recording
 from sim.simulation import Simulation, start
 
-_EXISTING = click.Path(exists=True, dir_okay=False, path_type=Path)
-_NEW = click.Path(dir_okay=False, path_type=Path)
+_EXISTING_FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+_NEW_FILE = click.Path(dir_okay=False, path_type=Path)
 _THEME = click.option("--theme", type=click.Choice(["light", "dark"]), default="light", show_default=True)
 
 
 class _WorldFirst(click.Group):
-    """A group whose verb `run` may be left out: a first word that is no verb is the world."""
+    """A group in which the command `run` is optional: a first argument that is not a command is the world."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if args and not args[0].startswith("-") and args[0] not in self.commands:
@@ -46,11 +46,11 @@ python -m sim teleop                 drive a robot by the keys of this terminal
 
 @click.group(cls=_WorldFirst, help=_HELP, context_settings={"help_option_names": ["-h", "--help"]})
 def main() -> None:
-    """Hold the verbs."""
+    """Group the commands."""
 
 
 @main.command(context_settings={"ignore_unknown_options": True, "allow_extra_args": True})
-@click.argument("world", type=_EXISTING)
+@click.argument("world", type=_EXISTING_FILE)
 @click.option("--speed", type=click.FloatRange(0.01, 1000.0), default=1.0, show_default=True, help="Times real time.")
 @click.option("--robot", "robots", multiple=True, metavar="NAMESPACE", help="A robot's namespace; once for each robot.")
 @click.option("--lidar", type=click.Choice(["lds_01", "rplidar_a1", "utm_30lx"]), default="lds_01", show_default=True)
@@ -85,30 +85,30 @@ def run(
         f"start_paused:={str(paused).lower()}",
     )
     arguments = [text for parameter in parameters for text in ("-p", parameter)]
-    # The user's own arguments come last, so that they win.
+    # The user's own arguments are last, so that they have precedence.
     sys.exit(run_node(["--ros-args", *arguments, "--", *ctx.args]))
 
 
 @main.command()
-@click.argument("world", type=_EXISTING)
-@click.argument("picture", type=_NEW)
+@click.argument("world", type=_EXISTING_FILE)
+@click.argument("picture", type=_NEW_FILE)
 @_THEME
 @click.option("--scan/--no-scan", default=False, help="Put robots on the start poses, and show what they see.")
 def picture(world: Path, picture: Path, theme: str, scan: bool) -> None:
     """Draw WORLD into PICTURE, a .png or .svg."""
     from sim.view import show
 
-    loaded = load(world)
-    drawn = show(loaded, theme=theme)
+    loaded_world = load(world)
+    drawing = show(loaded_world, theme=theme)
     if scan:
-        simulation = Simulation(loaded)
-        drawn = show(simulation, start(simulation), theme=theme)
-    _save(drawn, picture)
+        simulation = Simulation(loaded_world)
+        drawing = show(simulation, start(simulation), theme=theme)
+    _save(drawing, picture)
 
 
 @main.command()
-@click.argument("recording", type=_EXISTING)
-@click.argument("picture", type=_NEW)
+@click.argument("recording", type=_EXISTING_FILE)
+@click.argument("picture", type=_NEW_FILE)
 @click.option("--colour", type=click.Choice(["time", "clearance"]), default="time", show_default=True)
 @click.option("--mark", type=float, metavar="SECONDS", help="Mark an instant.")
 @click.option("--note", default="", help="What to write beside the mark.")
@@ -121,7 +121,7 @@ def plot(recording: Path, picture: Path, colour: Any, mark: float | None, note: 
 
 
 @main.command(name="export")
-@click.argument("recording", type=_EXISTING)
+@click.argument("recording", type=_EXISTING_FILE)
 @click.argument("out", type=click.Path(path_type=Path))
 @click.option("--speed", type=float, help="Of a .gif or .mp4: simulated seconds in a second.  [default: 1]")
 @click.option("--fps", type=float, help="Of a .gif or .mp4: frames a second.  [default: 10 or 25]")
@@ -129,8 +129,8 @@ def export_(recording: Path, out: Path, **options: float | None) -> None:
     """Write a saved RECORDING as OUT: .gif, .mp4, .html, or .mcap for a rosbag2 folder of that name."""
     from sim.export import export
 
-    given = {name: value for name, value in options.items() if value is not None}
-    click.echo(export(load_recording(recording), out, **given))
+    given_options = {name: value for name, value in options.items() if value is not None}
+    click.echo(export(load_recording(recording), out, **given_options))
 
 
 @main.command()
@@ -143,9 +143,9 @@ def teleop(namespace: str, stamped: bool) -> None:
     drive(namespace, stamped=stamped)
 
 
-def _save(drawn: Any, path: Path) -> None:
+def _save(drawing: Any, path: Path) -> None:
     try:
-        click.echo(drawn.save(path))
+        click.echo(drawing.save(path))
     except (OSError, ValueError) as error:
         raise click.ClickException(str(error)) from None
 

@@ -1,4 +1,4 @@
-"""A simulation as JSON and back, exactly: floats are written so that they read back to the same bits."""
+"""Converts a simulation to JSON and back without loss: floats keep their bits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sim.world import Goal, Mover, World
 
 
 def to_json(simulation: Simulation) -> str:
-    """Write everything that a run is made of as one line of JSON."""
+    """Return a simulation as one line of JSON."""
     world = simulation.world
     return json.dumps(
         {
@@ -40,7 +40,7 @@ def to_json(simulation: Simulation) -> str:
 
 
 def from_json(text: str) -> Simulation:
-    """Read what `to_json` wrote. Raises RecordingError for anything else."""
+    """Return the simulation that `to_json` wrote. Raise a RecordingError for any other text."""
     try:
         data = json.loads(text)
         return Simulation(

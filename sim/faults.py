@@ -1,4 +1,4 @@
-"""What can go wrong with a lidar, as values switched on for windows of simulated time."""
+"""Faults of a lidar, each of which lasts for a window of simulated time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim.exceptions import SpecError
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """From `start` (inclusive) to `end` (exclusive), in seconds of simulated time."""
+    """A window of simulated time from `start` (inclusive) to `end` (exclusive), in seconds."""
 
     start: float = 0.0
     end: float = math.inf
@@ -41,7 +41,7 @@ class DeadSector:
 
     @property
     def width(self) -> float:
-        """How wide it is in radians: the whole turn where `last` is one or more beyond `first`."""
+        """The width in radians: a whole turn if `last` is at least a turn beyond `first`."""
         width = self.last - self.first
         return width if width >= math.tau else width % math.tau
 
@@ -50,8 +50,8 @@ class DeadSector:
 class Faults:
     """The faults of one robot's lidar.
 
-    In a `dead` window it sends nothing at all; in a `frozen` one it sends the scan of the window's start again and
-    again, each with a new stamp; a `DeadSector` is blind.
+    In a `dead` window, the lidar sends nothing. In a `frozen` one, it repeats the scan from the start of the
+    window, each time with a new stamp. In a `DeadSector`, it measures nothing.
     """
 
     dead: tuple[Window, ...] = ()

@@ -1,4 +1,4 @@
-"""Whether a notebook runs under the grader, where nothing is shown and only its files matter."""
+"""Detects whether a notebook runs under the grader, which displays nothing and reads only the notebook's files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a lidar is, and what it says: the description of the sensor, and one scan with every field of LaserScan."""
+"""A lidar: the description of the sensor, and its scans with every field of LaserScan."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ MAX_RANGE = 10_000.0
 
 @dataclass(frozen=True, slots=True)
 class LidarSpec:
-    """A planar lidar: `beams` beams from `angle_min` on, `angle_increment` apart, in radians, frame `laser`.
+    """A planar lidar: `beams` beams from `angle_min` on, at steps of `angle_increment` (radians, in frame `laser`).
 
-    Ranges are in metres, `rate` in scans a second, `noise` is the standard deviation of a range in metres,
-    `dropout` the probability that a beam is lost. `mount` is the pose of `laser` in `base_link`. With `skew` the
-    beams are taken one after the other over a whole turn while the robot moves, as in a real one; without it all
-    are taken at once and `time_increment` is 0.
+    Ranges are in metres, and `rate` is in scans a second. `noise` is the standard deviation of a range in metres, and
+    `dropout` the probability that a beam is lost. `mount` is the pose of `laser` in `base_link`. With `skew`, the beams
+    are measured one after the other over a whole turn while the robot moves, as by a real lidar. Without it, all are
+    measured at once, and `time_increment` is 0.
     """
 
     name: str = "LDS-01"
@@ -41,7 +41,7 @@ class LidarSpec:
     mount: Pose = ORIGIN
 
     def __post_init__(self) -> None:
-        for what, good, remedy in (
+        for name, is_valid, remedy in (
             ("beams", 1 <= self.beams <= MAX_BEAMS, f"from 1 to {MAX_BEAMS}"),
             ("angle_min", -math.tau <= self.angle_min <= math.tau, "an angle in radians within a turn of 0"),
             ("angle_increment", 1e-7 <= self.angle_increment <= math.tau, "radians, from 1e-7 to a whole turn"),
@@ -52,8 +52,8 @@ class LidarSpec:
             ("mount", all(map(math.isfinite, (self.mount.x, self.mount.y, self.mount.theta))), "a finite pose"),
             ("dropout", 0.0 <= self.dropout <= 1.0, "a probability from 0 to 1"),
         ):
-            if not good:
-                raise SpecError(f"lidar {self.name!r}: {what} is {getattr(self, what)}; give {remedy}")
+            if not is_valid:
+                raise SpecError(f"lidar {self.name!r}: {name} is {getattr(self, name)}; give {remedy}")
         if self.beams * self.angle_increment > math.tau * (1.0 + 1e-9):
             raise SpecError(
                 f"lidar {self.name!r}: {self.beams} beams {self.angle_increment} rad apart go round more than once, "
@@ -62,12 +62,12 @@ class LidarSpec:
 
     @property
     def angle_max(self) -> float:
-        """The last beam's angle in radians: never a repeat of the first."""
+        """The last beam's angle in radians, which is less than a turn from the first."""
         return self.angle_min + (self.beams - 1) * self.angle_increment
 
     @property
     def time_increment(self) -> float:
-        """The time between two beams in seconds, of a lidar that takes them one after the other."""
+        """The time between two beams in seconds, if they are measured one after the other."""
         return self.angle_increment / math.tau / self.rate
 
 
@@ -96,8 +96,9 @@ UTM_30LX = LidarSpec(
 class Scan:
     """One scan: the fields of sensor_msgs/LaserScan under their own names, and `stamp_ns` and `frame_id` of its header.
 
-    `ranges` and `intensities` are float32 of shape (beams,), read-only. REP 117: `+inf` no return, `-inf` too
-    close to measure, `nan` an invalid measurement. `intensities` is empty where the lidar gives none.
+    `ranges` and `intensities` are float32 of shape (beams,), read-only. By REP 117, `+inf` means that nothing
+    was hit, `-inf` that an object is too close to measure, and `nan` that the measurement is invalid. `intensities` is
+    empty if the lidar does not measure them.
     `stamp_ns` is the simulated time of the first beam in nanoseconds.
     """
 

@@ -1,9 +1,9 @@
-"""Random numbers that depend on what they are for, and never on who asked first.
+"""Random numbers that depend on their purpose, and not on the order of the calls.
 
-A stream is keyed by (seed, robot, sensor), and its blocks by the tick: numpy's Philox is a counter-based generator,
-whose raw words numpy promises never to change. They are turned into normal numbers by Wichura's rational
-approximation of the inverse of the normal distribution (algorithm AS 241, 1988), with square roots, products and sums
-alone, and a logarithm made of the same, so that every machine draws the same bits.
+A stream has a key, made from (seed, robot, sensor), and its blocks are numbered by the tick. numpy's Philox is a
+counter-based generator, and numpy guarantees that its raw words do not change. They are converted to normal numbers by
+Wichura's rational approximation of the inverse of the normal distribution (algorithm AS 241, 1988). It uses only square
+roots, products, sums, and a logarithm that is computed from them, so that every machine draws the same bits.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Words = NDArray[np.uint64]
 
-WORDS_IN_A_BLOCK = 4
+WORDS_PER_BLOCK = 4
 
 _CENTRE_TOP = (
     3.3871328727963666080e0, 1.3314166789178437745e2, 1.9715909503065514427e3, 1.3731693765509461125e4,
@@ -53,39 +53,39 @@ def key_of(seed: int, robot: str, sensor: str) -> Words:
 
 
 def words(key: Words, tick: int, count: int) -> Words:
-    """Return `count` random words of 64 bits that belong to one tick: each tick has 2**64 blocks of its own."""
+    """Return `count` random words of 64 bits for one tick. Each tick has 2**64 separate blocks."""
     return words_at(key, [0, tick, 0, 0], count)
 
 
 def words_at(key: Words, counter: list[int], count: int) -> Words:
-    """Return `count` random words of the stream `key` from a place in it."""
+    """Return `count` random words of the stream with this key, starting at the position `counter`."""
     raw: Words = np.random.Philox(key=key, counter=counter).random_raw(count)
     return raw
 
 
 def words_of_ticks(key: Words, tick: int, ticks: int) -> Words:
-    """Return (ticks, 4) random words: a block for each tick from `tick` on, whether asked for at once or singly."""
-    raw = words_at(key, [tick, 0, 0, 0], WORDS_IN_A_BLOCK * ticks)
-    return raw.reshape(ticks, WORDS_IN_A_BLOCK)
+    """Return (ticks, 4) random words: a block for each tick from `tick` on, the same in one call as in several."""
+    raw = words_at(key, [tick, 0, 0, 0], WORDS_PER_BLOCK * ticks)
+    return raw.reshape(ticks, WORDS_PER_BLOCK)
 
 
 def uniform(raw: Words) -> Floats:
-    """Return numbers between 0 and 1, both excluded, in the middles of 2**52 equal steps."""
+    """Return numbers between 0 and 1, both excluded: the centres of 2**52 equal intervals."""
     numbers: Floats = ((raw >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
     return numbers
 
 
 def normal(raw: Words) -> Floats:
-    """Return standard normal numbers, one a word."""
+    """Return standard normal numbers, one for each word."""
     p = uniform(raw)
     q = p - 0.5
     r = 0.180625 - q * q
     result = q * (_horner(_CENTRE_TOP, r) / _horner(_CENTRE_BOTTOM, r))
-    outer = np.abs(q) > 0.425
-    if outer.any():
-        side = q[outer]
-        rest = np.where(side < 0.0, p[outer], 1.0 - p[outer])
-        r = np.sqrt(-_log(rest))
+    is_tail = np.abs(q) > 0.425
+    if is_tail.any():
+        side = q[is_tail]
+        tail_probability = np.where(side < 0.0, p[is_tail], 1.0 - p[is_tail])
+        r = np.sqrt(-_log(tail_probability))
         near = r - 1.6
         far = np.maximum(r - 5.0, 0.0)
         tail = np.where(
@@ -93,7 +93,7 @@ def normal(raw: Words) -> Floats:
             _horner(_TAIL_TOP, near) / _horner(_TAIL_BOTTOM, near),
             _horner(_FAR_TOP, far) / _horner(_FAR_BOTTOM, far),
         )
-        result[outer] = np.where(side < 0.0, -tail, tail)
+        result[is_tail] = np.where(side < 0.0, -tail, tail)
     return result
 
 

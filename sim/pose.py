@@ -1,4 +1,4 @@
-"""Where a robot is, and what it is told to do: the two smallest values of the simulator."""
+"""Poses of robots, and velocity commands."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """What a Twist asks of a differential drive: `linear` in m/s along x of base_link, `angular` in rad/s about z."""
+    """The velocities in a Twist for a differential drive: `linear` in m/s along x of base_link, `angular` in rad/s."""
 
     linear: float = 0.0
     angular: float = 0.0

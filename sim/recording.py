@@ -1,4 +1,4 @@
-"""A recording of a run: arrays of everything that happened, saved to one compact file, replayed exactly."""
+"""A recording of a run: arrays of its states, commands and scans, which can be saved to a file and replayed exactly."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ MAX_BYTES = 4_000_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScanLog:
-    """The scans of one robot: S of them, the beams in the columns.
+    """The S scans of one robot.
 
-    `rows` (S,) int64 says at which row of the recording each was taken, `stamps_ns` (S,) int64 when its first beam
-    was; `ranges` and `intensities` are (S, beams) float32, the latter (S, 0) where the lidar gives none.
+    `rows` (S,) int64 contains each scan's row in the recording, and `stamps_ns` (S,) int64 the time of its first beam.
+    `ranges` and `intensities` are (S, beams) float32, the latter (S, 0) if the lidar does not measure intensities.
     """
 
     rows: NDArray[np.int64]
@@ -47,12 +47,12 @@ class ScanLog:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
-    """A run of K states (row 0 is the start) of R robots.
+    """A run of R robots with K states. Row 0 is the start.
 
-    `times_ns` (K,) int64; `poses` (K, R, 3) x, y, theta in m, m, rad, frame map; `velocities` (K, R, 2) m/s, rad/s;
-    `commands` (K, R, 2), what was sent before each state, and nan where nothing was; `odometry` (K, R, 3) and
-    `covariances` (K, R, 9); `collided` (K, R) bool; `clearances` (K, R) metres; `scans`, one log a robot; `events`;
-    `said`, what the programs wrote, which is no part of the hash.
+    The columns are `times_ns` (K,) int64; `poses` (K, R, 3), x, y, theta in m, m, rad, frame map; `velocities`
+    (K, R, 2) in m/s, rad/s; `commands` (K, R, 2), sent before each state, nan if there was none; `odometry` (K, R, 3)
+    and `covariances` (K, R, 9); `collided` (K, R) bool; `clearances` (K, R) in metres. `scans` has a log for each
+    robot. `log_lines` is the output of the programs, which is not part of the hash.
     """
 
     simulation: Simulation
@@ -66,7 +66,7 @@ class Recording:
     clearances: NDArray[np.float64]
     scans: tuple[ScanLog, ...]
     events: tuple[Event, ...] = ()
-    said: tuple[Line, ...] = ()
+    log_lines: tuple[Line, ...] = ()
 
     def __len__(self) -> int:
         return len(self.times_ns)
@@ -77,7 +77,7 @@ class Recording:
         return self.times_ns / 1e9
 
     def sha256(self) -> str:
-        """Return the hash of the exact content: times, commands, states, scans and events, no engine and no file."""
+        """Return the hash of the exact content: simulation, times, commands, states, scans and events."""
         digest = hashlib.sha256(to_json(self.simulation).encode())
         for name, array in self._arrays().items():
             digest.update(f"{name} {array.dtype.str} {array.shape}".encode())
@@ -86,12 +86,12 @@ class Recording:
         return digest.hexdigest()
 
     def save(self, path: str | Path) -> None:
-        """Write the recording to one compact file, `.npz` by custom."""
+        """Write the recording to a compressed file, usually named `.npz`."""
         header = {
             "format": FORMAT,
             "simulation": to_json(self.simulation),
             "events": [asdict(event) for event in self.events],
-            "said": self.said,
+            "said": self.log_lines,
         }
         text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
         arrays: dict[str, Any] = {"header": text, **self._arrays()}
@@ -105,8 +105,8 @@ class Recording:
         return arrays
 
 
-# What numpy, zipfile, zlib and json raise on a file that is not what it should be.
-_DAMAGE = (
+# The exceptions that numpy, zipfile, zlib and json raise for a file that is damaged or not a recording.
+_READ_ERRORS = (
     OSError,
     LookupError,
     TypeError,
@@ -128,7 +128,7 @@ _SCAN_COLUMNS = ("rows", "stamps_ns", "ranges", "intensities")
 
 
 class Recorder:
-    """Collects a run state by state, and in `log` what is said; `recording()` gives what has been collected so far."""
+    """Collects the states of a run, and in `log` the output of programs. `recording()` returns them."""
 
     def __init__(self, simulation: Simulation, state: State | None = None) -> None:
         self._simulation = simulation
@@ -141,21 +141,26 @@ class Recorder:
         self.append(start(simulation) if state is None else state)
 
     def append(self, state: State, commands: Commands = None) -> None:
-        """Add a state and the commands that were given to the step that led to it."""
-        given = {self._names[0]: commands} if isinstance(commands, Command) else commands or {}
+        """Add a state, and the commands of the step that led to it."""
+        commands_by_robot = {self._names[0]: commands} if isinstance(commands, Command) else commands or {}
         self._states.append(state)
         self._commands.append(
-            [(given[name].linear, given[name].angular) if name in given else (np.nan, np.nan) for name in self._names]
+            [
+                (commands_by_robot[name].linear, commands_by_robot[name].angular)
+                if name in commands_by_robot
+                else (np.nan, np.nan)
+                for name in self._names
+            ]
         )
         self._clearances.append([clearance(self._simulation, state, name).distance for name in self._names])
 
     def scan(self, scan: Scan | None, robot: str | None = None) -> None:
-        """Add a scan of the state appended last; None, from a dead lidar, adds nothing."""
+        """Add a scan measured in the last state that was added. None, from a dead lidar, is ignored."""
         if scan is not None:
             self._scans[0 if robot is None else self._names.index(robot)].append((len(self._states) - 1, scan))
 
     def recording(self) -> Recording:
-        """Return the recording so far."""
+        """Return a recording of the states that have been added."""
         states, count = self._states, len(self._names)
 
         def table(rows: list[Any], width: int) -> NDArray[np.float64]:
@@ -174,7 +179,7 @@ class Recorder:
             clearances=np.array(self._clearances, dtype=np.float64),
             scans=tuple(_log(scans) for scans in self._scans),
             events=tuple(event for state in states for event in state.events),
-            said=self.log.lines(),
+            log_lines=self.log.lines(),
         )
 
 
@@ -196,13 +201,13 @@ def run(
     *,
     dt: float = 0.1,
 ) -> Recording:
-    """Drive for a while and record it all.
+    """Simulate a run, and record it.
 
     Args:
         simulation: the world and its robots.
-        policy: gets the state and each robot's scan, and returns the commands for the next `dt`.
-        seconds: of simulated time.
-        dt: in seconds of simulated time, from one reading of the lidars to the next.
+        policy: returns the commands for the next `dt`, given the state and each robot's scan.
+        seconds: the duration in simulated time.
+        dt: the simulated time between two scans, in seconds.
     """
     state = start(simulation)
     recorder = Recorder(simulation, state)
@@ -219,7 +224,7 @@ def run(
 
 
 def load_recording(path: str | Path) -> Recording:
-    """Read a recording from a file. Raises RecordingError for a file that is none, or is damaged."""
+    """Read a recording from a file. Raise a RecordingError if the file is damaged or not a recording."""
     try:
         with Path(path).open("rb") as stream, zipfile.ZipFile(stream) as archive:
             size = sum(part.file_size for part in archive.infolist())
@@ -237,36 +242,36 @@ def load_recording(path: str | Path) -> Recording:
             logs = [
                 {name: file[f"scan{index}_{name}"] for name in _SCAN_COLUMNS} for index in range(len(simulation.robots))
             ]
-        _check(columns, logs)
+        _check_columns(columns, logs)
         events = tuple(Event(**event) for event in header["events"])
-        said = tuple((float(seconds), str(text)) for seconds, text in header.get("said", ()))
+        log_lines = tuple((float(seconds), str(text)) for seconds, text in header.get("said", ()))
         scans = tuple(ScanLog(**log) for log in logs)
-        return Recording(simulation, **columns, scans=scans, events=events, said=said)
+        return Recording(simulation, **columns, scans=scans, events=events, log_lines=log_lines)
     except FileNotFoundError:
         raise RecordingError(f"{path}: there is no such file; give the path of a saved recording") from None
     except RecordingError as error:
         raise RecordingError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
-    except _DAMAGE as error:
+    except _READ_ERRORS as error:
         raise RecordingError(f"{path}: not a recording, or a damaged one ({error}); record the run again") from None
 
 
-def _check(columns: dict[str, NDArray[Any]], logs: list[dict[str, NDArray[Any]]]) -> None:
-    """Raise RecordingError for columns that cannot belong to one run."""
+def _check_columns(columns: dict[str, NDArray[Any]], logs: list[dict[str, NDArray[Any]]]) -> None:
+    """Raise a RecordingError unless the columns can belong to one run."""
     rows, robots = len(columns["times_ns"]), len(logs)
-    wanted: dict[str, tuple[NDArray[Any], str, tuple[int, ...]]] = {
+    expected_columns: dict[str, tuple[NDArray[Any], str, tuple[int, ...]]] = {
         "times_ns": (columns["times_ns"], "i8", (rows,)),
         "collided": (columns["collided"], "b1", (rows, robots)),
         "clearances": (columns["clearances"], "f8", (rows, robots)),
     }
     for name, width in (("poses", 3), ("velocities", 2), ("commands", 2), ("odometry", 3), ("covariances", 9)):
-        wanted[name] = (columns[name], "f8", (rows, robots, width))
+        expected_columns[name] = (columns[name], "f8", (rows, robots, width))
     for index, log in enumerate(logs):
         count = len(log["rows"])
-        wanted[f"scan{index}_rows"] = (log["rows"], "i8", (count,))
-        wanted[f"scan{index}_stamps_ns"] = (log["stamps_ns"], "i8", (count,))
+        expected_columns[f"scan{index}_rows"] = (log["rows"], "i8", (count,))
+        expected_columns[f"scan{index}_stamps_ns"] = (log["stamps_ns"], "i8", (count,))
         for name in ("ranges", "intensities"):
-            wanted[f"scan{index}_{name}"] = (log[name], "f4", (count, *log[name].shape[1:2]))
-    for name, (array, kind, shape) in wanted.items():
+            expected_columns[f"scan{index}_{name}"] = (log[name], "f4", (count, *log[name].shape[1:2]))
+    for name, (array, kind, shape) in expected_columns.items():
         if array.dtype != np.dtype(kind) or array.shape != shape or array.ndim != len(shape):
             raise RecordingError(
                 f"the column {name} has the shape {array.shape} of {array.dtype}, not {shape} of {np.dtype(kind)}; "
@@ -275,9 +280,9 @@ def _check(columns: dict[str, NDArray[Any]], logs: list[dict[str, NDArray[Any]]]
 
 
 def replay(recording: Recording, *, engine: EngineName = "numpy") -> Iterator[State]:
-    """Run the recorded commands again from the recorded start: each state is the recorded one, bit for bit.
+    """Run the recorded commands again from the start. Each state equals the recorded one, bit for bit.
 
-    Raises RecordingError for a recording that does not begin at the start of its run.
+    Raises a RecordingError if the recording does not begin at the start of its run.
     """
     if recording.times_ns[0] != 0:
         raise RecordingError("the recording begins in the middle of its run; record from `start` on to replay it")

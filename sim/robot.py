@@ -17,10 +17,10 @@ CONVEX = "three points or more of a convex polygon round (0, 0), anticlockwise, 
 
 @dataclass(frozen=True, slots=True)
 class OdometryDrift:
-    """How wheel odometry goes astray; all zeros is a perfect one.
+    """The errors of wheel odometry, which is perfect if all of them are zero.
 
-    The measured motion of a tick has a variance that grows with the motion: `linear` in m of standard deviation
-    for a metre driven, `angular` in rad for a radian turned, `veer` in rad for a metre driven.
+    The variance of the motion measured in a tick grows with the motion. The standard deviation is `linear` in m for a
+    metre driven, `angular` in rad for a radian turned, and `veer` in rad for a metre driven.
     """
 
     linear: float = 0.0
@@ -28,9 +28,9 @@ class OdometryDrift:
     veer: float = 0.0
 
     def __post_init__(self) -> None:
-        for what in ("linear", "angular", "veer"):
-            if not 0.0 <= getattr(self, what) <= 10.0:
-                raise SpecError(f"drift: {what} is {getattr(self, what)}; give a standard deviation from 0 to 10")
+        for name in ("linear", "angular", "veer"):
+            if not 0.0 <= getattr(self, name) <= 10.0:
+                raise SpecError(f"drift: {name} is {getattr(self, name)}; give a standard deviation from 0 to 10")
 
 
 NO_DRIFT = OdometryDrift()
@@ -38,12 +38,12 @@ NO_DRIFT = OdometryDrift()
 
 @dataclass(frozen=True, slots=True)
 class RobotSpec:
-    """A robot: its footprint, its limits, its watchdog, its lidar.
+    """A robot: its footprint, limits, watchdog and lidar.
 
-    `radius` is that of a round footprint in metres; `footprint`, if given, is a convex polygon of points in
-    `base_link` instead. Limits are in m/s, rad/s, m/s² and rad/s². `watchdog` is the simulated time in seconds
-    after which a robot without a new command stops. `start` is where it starts; None takes the world's start pose
-    of the robot's index. `on_collision` is what a contact does to the motion.
+    `radius` is the radius of a round footprint in metres. `footprint`, if given, is a convex polygon of points in
+    `base_link` that replaces the circle. Limits are in m/s, rad/s, m/s² and rad/s². `watchdog` is the simulated time in
+    seconds after which a robot without a new command stops. `start` is its start pose; if it is None, the world's start
+    pose with the robot's index is used. `on_collision` is the effect of a contact on the motion.
     """
 
     name: str = "robot"
@@ -62,7 +62,7 @@ class RobotSpec:
     start: Pose | None = None
 
     def __post_init__(self) -> None:
-        for what, good, remedy in (
+        for name, is_valid, remedy in (
             ("name", bool(self.name) and self.name.isprintable(), "a short text"),
             ("radius", 0.01 <= self.radius <= 10.0, "metres, from 0.01 to 10"),
             ("max_linear", 0.0 <= self.max_linear <= 100.0, "m/s, from 0 to 100"),
@@ -74,8 +74,8 @@ class RobotSpec:
             ("start", self.start is None or _finite(self.start), "a pose of finite numbers"),
             ("footprint", self.footprint is None or _convex(self.footprint), CONVEX),
         ):
-            if not good:
-                raise SpecError(f"robot {self.name!r}: {what} is {getattr(self, what)!r}; give {remedy}")
+            if not is_valid:
+                raise SpecError(f"robot {self.name!r}: {name} is {getattr(self, name)!r}; give {remedy}")
 
 
 def _finite(pose: Pose) -> bool:
@@ -83,11 +83,14 @@ def _finite(pose: Pose) -> bool:
 
 
 def _convex(points: tuple[tuple[float, float], ...]) -> bool:
-    """Return whether each side turns left of the one before, with the origin on its left, once around."""
+    """Return whether the polygon turns left at each corner and goes round the origin once."""
     if len(points) < 3 or not all(math.isfinite(x) and math.isfinite(y) for x, y in points):
         return False
     sides = list(pairwise([*points, points[0]]))
-    ways = [(b[0] - a[0], b[1] - a[1]) for a, b in sides]
-    turns = [math.atan2(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]) for p, q in pairwise([*ways, ways[0]])]
+    directions = [(b[0] - a[0], b[1] - a[1]) for a, b in sides]
+    turns = [
+        math.atan2(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1])
+        for p, q in pairwise([*directions, directions[0]])
+    ]
     left_of_all = all(a[0] * b[1] - a[1] * b[0] > 0.0 for a, b in sides)
     return left_of_all and all(turn > 0.0 for turn in turns) and sum(turns) < 1.01 * math.tau

@@ -1,4 +1,4 @@
-"""A recording's rows as the values that they were: states and scans, for whoever shows or exports them."""
+"""Converts rows of a recording to states and scans, for views and exports."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def row_at(recording: Recording, time: float) -> int:
     """Return the row of the recording whose time is nearest to `time`, in seconds.
 
     Raises:
-        ValueError: if `time` is not finite.
+        ValueError: `time` is not finite.
     """
     if not math.isfinite(time):
         raise ValueError(f"there is no instant t = {time} s in a recording")
@@ -26,7 +26,7 @@ def row_at(recording: Recording, time: float) -> int:
 
 
 def state_at(recording: Recording, row: int) -> State:
-    """Return what row `row` says of the robots; what the watchdogs remember is not in it."""
+    """Return the state in a row. It does not contain the robots' last commands, which watchdogs need."""
     simulation, time_ns = recording.simulation, int(recording.times_ns[row])
     robots = tuple(
         RobotState(
@@ -47,8 +47,8 @@ def scan_at(recording: Recording, index: int, number: int) -> Scan:
 
     Args:
         recording: the run.
-        index: the robot's, in the order of the simulation's.
-        number: of the scan, from 0.
+        index: the index of the robot in the simulation.
+        number: the number of the scan, from 0.
 
     Raises:
         ValueError: the robot has no lidar.
@@ -72,12 +72,12 @@ def scan_at(recording: Recording, index: int, number: int) -> Scan:
 
 
 def newest_scan(recording: Recording, index: int, row: int) -> tuple[Scan, Pose] | None:
-    """Return the last scan that a robot had taken, with the pose it was taken from; None before the first.
+    """Return a robot's last scan up to a row, with the robot's pose at that scan; None before the first scan.
 
     Args:
         recording: the run.
-        index: the robot's, in the order of the simulation's.
-        row: of the recording, up to which scans count.
+        index: the index of the robot in the simulation.
+        row: the last row to consider.
     """
     log = recording.scans[index]
     number = int(np.searchsorted(log.rows, row, side="right")) - 1

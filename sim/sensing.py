@@ -1,4 +1,4 @@
-"""What a lidar sees in a state: ranges from the engine, then noise, drop-outs and faults, then a scan."""
+"""Simulates lidars: makes scans from the engine's ranges, with noise, drop-outs and faults."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from sim.state import Simulation, State
 from sim.world import MIN_METRES
 
 Floats = NDArray[np.float64]
-NOTHING = np.empty(0)
+NO_NOISE = np.empty(0)
 
 
 def observe(simulation: Simulation, state: State, robot: str | None = None) -> Scan | None:
-    """Return what a robot's lidar sees now; None when a dead lidar sends nothing.
+    """Return the scan of a robot's lidar in a state, or None if the lidar is dead.
 
-    The scan depends on the simulation and the state alone: not on who looked before, nor on the engine.
+    The scan depends only on the simulation and the state, not on earlier calls or on the engine.
 
     Args:
         simulation: the world and its robots.
-        state: the present one.
-        robot: its name; the first robot if None.
+        state: the current state.
+        robot: the name of the robot; the first robot if None.
 
     Raises:
         SpecError: the robot does not exist or has no lidar.
@@ -47,18 +47,18 @@ def observe(simulation: Simulation, state: State, robot: str | None = None) -> S
     time_ns = state.time_ns
     if faults.dead and any(window.holds(time_ns) for window in faults.dead):
         return None
-    source = state.robots[index].held or state
+    measured_state = state.robots[index].held or state
     body = simulation.scene.bodies[index]
-    distances = _ranges(simulation, source, index, lidar, body)
-    noise = normal(words(body.range_key, source.tick, lidar.beams)) if lidar.noise > 0.0 else NOTHING
+    distances = _ranges(simulation, measured_state, index, lidar, body)
+    noise = normal(words(body.range_key, measured_state.tick, lidar.beams)) if lidar.noise > 0.0 else NO_NOISE
     ranges, intensities = simulation.scene.engine.to_readings(
         distances, noise, lidar.noise, lidar.range_min, lidar.range_max, lidar.intensities
     )
     if lidar.dropout > 0.0 or faults.sectors:
-        lost = _lost(lidar, body, source.tick, time_ns, faults.sectors)
-        ranges[lost] = np.nan
+        is_lost = _lost_beams(lidar, body, measured_state.tick, time_ns, faults.sectors)
+        ranges[is_lost] = np.nan
         if lidar.intensities:
-            intensities[lost] = 0.0
+            intensities[is_lost] = 0.0
     ranges.flags.writeable = False
     intensities.flags.writeable = False
     sweep_ns = 0
@@ -85,36 +85,36 @@ def cast(simulation: Simulation, pose: Pose, lidar: LidarSpec) -> Floats:
 
     Args:
         simulation: the world.
-        pose: of the lidar, in the frame `map`.
-        lidar: its beams and its range.
+        pose: the pose of the lidar, in the frame `map`.
+        lidar: the lidar's beams and range.
 
-    Of the world's walls and circles alone, with movers where they are at time 0; `inf` beyond `range_max`. A beam
-    starts at the pose and goes along `directions(pose, lidar)`; a wall is a closed segment and a circle a solid disc.
-    Numbers nearer to zero than 1e-60 are taken for zero.
+    Movers are at their positions at time 0. A distance beyond `range_max` is `inf`. A beam starts at the pose, and its
+    direction is the one in `directions(pose, lidar)`. A wall is a closed segment, and a circle a solid disc. Numbers
+    below 1e-60 are treated as zero.
     """
     scene = simulation.scene
-    ranges = _fan(scene, scene.walls, _circles(scene, scene.movers_at(0)), pose, lidar)
+    ranges = _fan_ranges(scene, scene.walls, _circles(scene, scene.movers_at(0)), pose, lidar)
     ranges[ranges > lidar.range_max] = np.inf
     return ranges
 
 
 def directions(pose: Pose, lidar: LidarSpec) -> Floats:
-    """Return the beams' directions (beams, 2) in the frame `map`, the very doubles that the engines use."""
-    s, c = sincos(clean(pose.theta))
+    """Return the directions (beams, 2) of the beams in the frame `map`: the same doubles that the engines use."""
+    s, c = sincos(zero_if_tiny(pose.theta))
     x, y = beams_of(lidar).table
     return np.stack((c * x - s * y, s * x + c * y), axis=1)
 
 
-def mounted(pose: Pose, mount: Pose) -> Pose:
-    """Return where a sensor is whose pose in `base_link` is `mount`, for a robot at `pose`."""
-    if mount is ORIGIN:  # the usual one; the sums below would come to the same
+def sensor_pose(pose: Pose, mount: Pose) -> Pose:
+    """Return the pose in `map` of a sensor with the pose `mount` in `base_link`, for a robot at `pose`."""
+    if mount is ORIGIN:  # the usual case, in which the sums below would give the same result
         return pose
     s, c = sincos(pose.theta)
     return Pose(pose.x + (c * mount.x - s * mount.y), pose.y + (s * mount.x + c * mount.y), pose.theta + mount.theta)
 
 
-def clean(value: float) -> float:
-    """Return 0 for numbers so small that their products would leave the range of a double."""
+def zero_if_tiny(value: float) -> float:
+    """Return the value, or 0 if it is so small that products would underflow."""
     return value if abs(value) >= MIN_METRES else 0.0
 
 
@@ -122,76 +122,82 @@ def _ranges(simulation: Simulation, state: State, index: int, lidar: LidarSpec, 
     scene = simulation.scene
     robot = state.robots[index]
     walls, circles = scene.walls, scene.circles
-    extra: list[tuple[float, float, float]] = scene.movers_at(state.time_ns) if scene.tracks else []
+    extra_circles: list[tuple[float, float, float]] = scene.movers_at(state.time_ns) if scene.tracks else []
     if len(simulation.robots) > 1:
         sides = []
         for number, (spec, other) in enumerate(zip(simulation.robots, state.robots, strict=True)):
             if number != index:
                 sides += outline(other.pose, spec)
-                extra += _disc(other.pose, spec)
+                extra_circles += _disc(other.pose, spec)
         if sides:
             walls = np.concatenate((walls, layout(np.array(sides))), axis=1)
-    if extra:
-        circles = _circles(scene, extra)
+    if extra_circles:
+        circles = _circles(scene, extra_circles)
     if lidar.skew:
-        return _skewed(scene, walls, circles, robot.pose, robot.velocity.linear, robot.velocity.angular, lidar, body)
-    return _fan(scene, walls, circles, mounted(robot.pose, lidar.mount), lidar, body)
+        return _skewed_ranges(
+            scene, walls, circles, robot.pose, robot.velocity.linear, robot.velocity.angular, lidar, body
+        )
+    return _fan_ranges(scene, walls, circles, sensor_pose(robot.pose, lidar.mount), lidar, body)
 
 
 def _disc(pose: Pose, spec: RobotSpec) -> list[tuple[float, float, float]]:
     return [(pose.x, pose.y, spec.radius)] if spec.footprint is None else []
 
 
-def _circles(scene: Scene, extra: Sequence[tuple[float, float, float]]) -> Floats:
-    return np.concatenate((scene.circles, np.array(extra))) if extra else scene.circles
+def _circles(scene: Scene, extra_circles: Sequence[tuple[float, float, float]]) -> Floats:
+    return np.concatenate((scene.circles, np.array(extra_circles))) if extra_circles else scene.circles
 
 
-def _fan(scene: Scene, walls: Floats, circles: Floats, at: Pose, lidar: LidarSpec, body: Body | None = None) -> Floats:
+def _fan_ranges(
+    scene: Scene, walls: Floats, circles: Floats, lidar_pose: Pose, lidar: LidarSpec, body: Body | None = None
+) -> Floats:
     beams = beams_of(lidar) if body is None or body.beams is None else body.beams
     grid = scene.grid
-    pose = (clean(at.x), clean(at.y), clean(at.theta))
-    place = (circles, beams.table, *pose, lidar.angle_min, beams.per_radian, beams.reach)
+    origin = (zero_if_tiny(lidar_pose.x), zero_if_tiny(lidar_pose.y), zero_if_tiny(lidar_pose.theta))
+    arguments = (circles, beams.table, *origin, lidar.angle_min, beams.per_radian, beams.reach)
     ranges: Floats
     if grid is None or walls is not scene.walls:
-        ranges = scene.engine.fan(walls, *place)
+        ranges = scene.engine.fan(walls, *arguments)
     else:
         ranges = scene.engine.fan_in_grid(
-            walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *place
+            walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *arguments
         )
     return ranges
 
 
-def _skewed(
+def _skewed_ranges(
     scene: Scene, walls: Floats, circles: Floats, pose: Pose, v: float, w: float, lidar: LidarSpec, body: Body
 ) -> Floats:
-    """Each beam from where the robot was, had it always moved as it does now; the last beam is of this instant."""
+    """Return the ranges of beams measured one after the other at constant velocity, the last one at this instant."""
     beams = body.beams or beams_of(lidar)
     origins = np.empty((lidar.beams, 2))
-    ways = np.empty((lidar.beams, 2))
+    ray_directions = np.empty((lidar.beams, 2))
     for beam, (bx, by) in enumerate(beams.table.T.tolist()):
-        before = (lidar.beams - 1 - beam) * lidar.time_increment
-        at = mounted(Pose(*along_arc(pose.x, pose.y, pose.theta, v, w, -before)), lidar.mount)
+        seconds_before = (lidar.beams - 1 - beam) * lidar.time_increment
+        at = sensor_pose(Pose(*along_arc(pose.x, pose.y, pose.theta, v, w, -seconds_before)), lidar.mount)
         s, c = sincos(at.theta)
-        origins[beam] = clean(at.x), clean(at.y)
-        ways[beam] = c * bx - s * by, s * bx + c * by
-    ranges: Floats = scene.engine.rays(walls, circles, origins, ways)
+        origins[beam] = zero_if_tiny(at.x), zero_if_tiny(at.y)
+        ray_directions[beam] = c * bx - s * by, s * bx + c * by
+    ranges: Floats = scene.engine.rays(walls, circles, origins, ray_directions)
     return ranges
 
 
-def _lost(lidar: LidarSpec, body: Body, tick: int, time_ns: int, sectors: Sequence[DeadSector]) -> NDArray[np.bool_]:
+def _lost_beams(
+    lidar: LidarSpec, body: Body, tick: int, time_ns: int, sectors: Sequence[DeadSector]
+) -> NDArray[np.bool_]:
     """Return which beams are lost, by chance or in a dead sector."""
-    lost = np.zeros(lidar.beams, dtype=np.bool_)
+    is_lost = np.zeros(lidar.beams, dtype=np.bool_)
     if lidar.dropout > 0.0:
-        lost |= uniform(words(body.dropout_key, tick, lidar.beams)) < lidar.dropout
+        is_lost |= uniform(words(body.dropout_key, tick, lidar.beams)) < lidar.dropout
     for sector in sectors:
         if sector.window.holds(time_ns):
             angles = lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment - sector.first
-            lost |= angles - TAU * np.floor(angles / TAU) <= sector.width
-    return lost
+            is_lost |= angles - TAU * np.floor(angles / TAU) <= sector.width
+    return is_lost
 
 
 def scan_angles(scan: Scan) -> Floats:
     """Return the angle of each beam of a scan in radians, frame `laser`, in [-pi, pi): 0 is straight ahead."""
     angles = scan.angle_min + np.arange(len(scan.ranges)) * scan.angle_increment
-    wrapped: Floats = angles - TAU * np.floor((angles + math.pi) / TAU)
-    return wrapped
+    wrapped_angles: Floats = angles - TAU * np.floor((angles + math.pi) / TAU)
+    return wrapped_angles

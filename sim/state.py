@@ -1,4 +1,4 @@
-"""What a run is made of, and its state at one instant: frozen data, with no globals and no hidden clock."""
+"""The parameters of a run, and its state at one instant, as frozen data without globals or a hidden clock."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ Covariance = tuple[float, float, float, float, float, float, float, float, float
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happened, `what` in words, at the point (`x`, `y`) of the frame `map`.
+    """An event at the point (`x`, `y`) of the frame `map`, which `what` describes.
 
-    `kind` is "collision" (with the `speed` in m/s at which the obstacle was met) or "watchdog".
+    `kind` is "collision", with the `speed` of the impact in m/s, or "watchdog".
     """
 
     time_ns: int
@@ -36,12 +36,12 @@ class Event:
 
 @dataclass(frozen=True)
 class Simulation:
-    """What a run is made of: a world, robots, a seed. Nothing in it ever changes.
+    """The parameters of a run: a world, robots and a seed. A simulation is immutable.
 
-    `tick` is the physics period in seconds; `engine` is who computes: "numpy", "numba" (the extra `fast`) or
-    "auto" (numba where it is installed). All give the same states and the same scans, bit for bit.
+    `tick` is the physics period in seconds. `engine` is "numpy", "numba" (which needs the extra `fast`) or "auto"
+    (numba if it is installed). All engines compute the same states and scans, bit for bit.
 
-    Raises SpecError where names repeat or values make no sense.
+    Raises a SpecError if two robots have the same name, or a value is invalid.
     """
 
     world: World
@@ -65,7 +65,7 @@ class Simulation:
             engine(self.engine)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave out what was laid out for the engine: a copy, here or in another process, lays it out again."""
+        """Leave out the cached scene. A copy, in this or another process, builds its own."""
         return {item.name: getattr(self, item.name) for item in fields(self)}
 
     @cached_property
@@ -75,11 +75,11 @@ class Simulation:
 
     @cached_property
     def scene(self) -> Scene:
-        """The world and the robots as the engine wants them, laid out once."""
+        """The world and the robots in the form that the engine needs, built once."""
         return build(self.world, self.robots, self.seed, self.engine)
 
     def movers_at(self, time_ns: int) -> list[tuple[float, float, float]]:
-        """Return where the world's movers are at a simulated time: `(x, y, radius)` each, in metres."""
+        """Return the world's movers at a simulated time, each as `(x, y, radius)` in metres."""
         return self.scene.movers_at(time_ns)
 
     @cached_property
@@ -87,7 +87,7 @@ class Simulation:
         return {None: 0, **{robot.name: number for number, robot in enumerate(self.robots)}}
 
     def number_of(self, robot: str | None) -> int:
-        """Return the index of a robot, the first for None. Raises SpecError for a name that no robot has."""
+        """Return the index of a robot, 0 if `robot` is None. Raise a SpecError if no robot has this name."""
         try:
             return self._numbers[robot]
         except KeyError:
@@ -99,11 +99,11 @@ class Simulation:
 class RobotState:
     """One robot at one instant.
 
-    `pose` is the truth in the frame `map`; `velocity` what its wheels do now, in m/s and rad/s (they go on turning
-    while it slides along something); `command` the last one received, at `command_ns`; `odometry` the pose by its
-    wheels in the frame `odom` (which starts at the start pose), with `covariance` over (x, y, theta), 3 x 3 row by
-    row in m², m rad and rad². `collided` is true while something blocks it; `collisions` counts the contacts so far.
-    `held` is the state in which a frozen lidar froze.
+    `pose` is the true pose in the frame `map`. `velocity`, in m/s and rad/s, is that of its wheels. They continue to
+    turn while the robot slides along an obstacle. `command` is the last one received, at `command_ns`. `odometry` is
+    the pose measured by its wheels in the frame `odom`, which begins at the start pose, and `covariance` the covariance
+    of (x, y, theta), 3 x 3 row by row in m², m rad and rad². `collided` is true while an obstacle blocks it, and
+    `collisions` counts its contacts. While its lidar is frozen, `held` is the state in which it froze.
     """
 
     name: str
@@ -120,9 +120,9 @@ class RobotState:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """The whole of a run at one instant: `tick` physics ticks and `time_ns` nanoseconds after its start.
+    """The state of a run at one instant, `tick` physics ticks and `time_ns` nanoseconds after its start.
 
-    `events` are those of the step that led here.
+    `events` are those of the step that led to this state.
     """
 
     tick: int

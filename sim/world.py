@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 Bounds = tuple[float, float, float, float]
 
 MAX_METRES = 100_000.0
-# Below this a coordinate is taken for zero: products of smaller ones would leave the range of a double.
+# A smaller coordinate is treated as zero, because products of such numbers would underflow.
 MIN_METRES = 1e-60
 
 
@@ -30,7 +30,7 @@ class Goal:
     name: str = "goal"
 
     def __post_init__(self) -> None:
-        if not (_near(self.x) and _near(self.y) and 0.0 < self.radius <= MAX_METRES):
+        if not (_is_within_limits(self.x) and _is_within_limits(self.y) and 0.0 < self.radius <= MAX_METRES):
             raise WorldError(
                 f"a goal at ({self.x}, {self.y}), radius {self.radius}", "Give metres, and a radius above 0"
             )
@@ -38,10 +38,10 @@ class Goal:
 
 @dataclass(frozen=True, slots=True)
 class Mover:
-    """A disc that walks along `path` (points in metres), there and back or round and round, for ever.
+    """A disc that moves along `path` (points in metres) for ever, back and forth or in a loop.
 
-    `speed` is in m/s and `pause` in seconds at each point. `phase` is the share of a whole cycle by which it is
-    ahead at time 0; None draws it from the run's seed, so that each seed is another schedule.
+    `speed` is in m/s, and `pause` is the waiting time at each point in seconds. `phase` is the share of the cycle that
+    has passed at time 0. If it is None, it is drawn from the run's seed, so that each seed has its own schedule.
     """
 
     path: tuple[tuple[float, float], ...]
@@ -54,26 +54,30 @@ class Mover:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", tuple((float(x), float(y)) for x, y in self.path))
-        good = (
-            ("path", self.path and all(_near(x) and _near(y) for x, y in self.path), "one point or more, in metres"),
+        conditions = (
+            (
+                "path",
+                self.path and all(_is_within_limits(x) and _is_within_limits(y) for x, y in self.path),
+                "one point or more, in metres",
+            ),
             ("radius", 0.0 < self.radius <= MAX_METRES, "metres, above 0"),
             ("speed", 0.0 < self.speed <= 100.0, "m/s, above 0 and at most 100"),
             ("pause", 0.0 <= self.pause <= 1e6, "seconds, 0 or above"),
             ("phase", self.phase is None or 0.0 <= self.phase <= 1.0, "a share of the cycle, from 0 to 1"),
         )
-        for what, right, remedy in good:
-            if not right:
-                value = getattr(self, what)
-                raise WorldError(f"the {what} of the mover {self.name!r} is {value!r}", f"Give {remedy}")
+        for label, is_valid, remedy in conditions:
+            if not is_valid:
+                value = getattr(self, label)
+                raise WorldError(f"the {label} of the mover {self.name!r} is {value!r}", f"Give {remedy}")
 
 
 @dataclass(frozen=True, eq=False)
 class World:
-    """Everything that stands around a robot, in the frame `map`.
+    """The surroundings of a robot, in the frame `map`.
 
-    `segments` is (N, 4) float64, one `[x1, y1, x2, y2]` a wall, and `circles` (M, 3) float64, one `[x, y, r]` a
-    pillar, all in metres and read-only. `segment_names` and `circle_names` hold one name for each (possibly
-    empty). `bounds` is `(xmin, ymin, xmax, ymax)`: of everything in the world where it is not given.
+    `segments` is (N, 4) float64, one `[x1, y1, x2, y2]` for each wall, and `circles` (M, 3) float64, one `[x, y, r]`
+    for each pillar, all in metres and read-only. `segment_names` and `circle_names` contain a possibly empty name for
+    each. `bounds` is `(xmin, ymin, xmax, ymax)`, by default those of everything in the world.
     """
 
     name: str = "world"
@@ -91,18 +95,21 @@ class World:
         circles = _table(self.circles, 3, "circles")
         if (circles[:, 2] <= 0).any():
             raise WorldError("a circle's radius is not above zero", "Give every circle a radius in metres")
-        put = object.__setattr__
-        put(self, "segments", segments)
-        put(self, "circles", circles)
-        put(self, "starts", tuple(self.starts) or (Pose(),))
-        if not all(_near(pose.x) and _near(pose.y) and math.isfinite(pose.theta) for pose in self.starts):
+        set_field = object.__setattr__
+        set_field(self, "segments", segments)
+        set_field(self, "circles", circles)
+        set_field(self, "starts", tuple(self.starts) or (Pose(),))
+        if not all(
+            _is_within_limits(pose.x) and _is_within_limits(pose.y) and math.isfinite(pose.theta)
+            for pose in self.starts
+        ):
             raise WorldError("a start pose is not within the world", "Give finite numbers in metres and radians")
-        put(self, "goals", tuple(self.goals))
-        put(self, "movers", tuple(self.movers))
-        put(self, "segment_names", _names(self.segment_names, len(segments), "segment_names"))
-        put(self, "circle_names", _names(self.circle_names, len(circles), "circle_names"))
+        set_field(self, "goals", tuple(self.goals))
+        set_field(self, "movers", tuple(self.movers))
+        set_field(self, "segment_names", _names(self.segment_names, len(segments), "segment_names"))
+        set_field(self, "circle_names", _names(self.circle_names, len(circles), "circle_names"))
         if tuple(self.bounds) == (0.0, 0.0, 0.0, 0.0):
-            put(self, "bounds", _bounds(self))
+            set_field(self, "bounds", _bounds(self))
 
     @classmethod
     def from_segments(
@@ -122,12 +129,12 @@ class World:
         Args:
             segments: walls (N, 4), rows `[x1, y1, x2, y2]` in metres.
             circles: solid circles (M, 3), rows `[x, y, r]` in metres.
-            name: of the world.
-            starts: where robots start, in order.
+            name: the world's name.
+            starts: the start poses, in the robots' order.
             goals: places to reach.
             movers: moving obstacles.
-            segment_names: of the walls, in order; those without one are numbered.
-            circle_names: of the circles, likewise.
+            segment_names: the names of the walls, in order. Walls without a name are numbered.
+            circle_names: the names of the circles, in order. Circles without a name are numbered.
         """
         return cls(
             name=name,
@@ -142,13 +149,13 @@ class World:
 
 
 def box(width: float, height: float, *, x: float = 0.0, y: float = 0.0) -> Floats:
-    """Return the four walls (4, 4) of a room, in the order south, east, north, west: the names in `BOX_NAMES`.
+    """Return the four walls (4, 4) of a room, in the order of `BOX_NAMES`: south, east, north, west.
 
     Args:
-        width: in metres, along x.
-        height: in metres, along y.
-        x: of the room's centre, in metres.
-        y: of the room's centre, in metres.
+        width: the size along x, in metres.
+        height: the size along y, in metres.
+        x: the x of the room's centre, in metres.
+        y: the y of the room's centre, in metres.
     """
     west, east, south, north = x - width / 2, x + width / 2, y - height / 2, y + height / 2
     return np.array(
@@ -164,31 +171,31 @@ def box(width: float, height: float, *, x: float = 0.0, y: float = 0.0) -> Float
 BOX_NAMES = ("south wall", "east wall", "north wall", "west wall")
 
 
-def _near(value: float) -> bool:
+def _is_within_limits(value: float) -> bool:
     return -MAX_METRES <= value <= MAX_METRES
 
 
-def _table(rows: ArrayLike, width: int, what: str) -> Floats:
+def _table(rows: ArrayLike, width: int, label: str) -> Floats:
     try:
         table = np.array(rows, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
-        raise WorldError(f"{what} are not numbers ({error})", f"Give rows of {width} numbers") from None
+        raise WorldError(f"{label} are not numbers ({error})", f"Give rows of {width} numbers") from None
     if table.size == 0:
         table = np.empty((0, width))
     if table.ndim != 2 or table.shape[1] != width:
-        raise WorldError(f"{what} have the shape {table.shape}", f"Give rows of {width} numbers")
+        raise WorldError(f"{label} have the shape {table.shape}", f"Give rows of {width} numbers")
     if not (np.abs(table) <= MAX_METRES).all():
-        raise WorldError(f"{what} hold a number that is not within {MAX_METRES:g} m", "Give finite numbers in metres")
+        raise WorldError(f"{label} hold a number that is not within {MAX_METRES:g} m", "Give finite numbers in metres")
     table[np.abs(table) < MIN_METRES] = 0.0
     table.flags.writeable = False
     return table
 
 
-def _names(names: Sequence[str], count: int, what: str) -> tuple[str, ...]:
+def _names(names: Sequence[str], count: int, label: str) -> tuple[str, ...]:
     if not names:
         return ("",) * count
     if len(names) != count:
-        raise WorldError(f"{what} holds {len(names)} names for {count}", "Give one name for each, or none at all")
+        raise WorldError(f"{label} holds {len(names)} names for {count}", "Give one name for each, or none at all")
     return tuple(names)
 
 

@@ -23,7 +23,7 @@ Files = Mapping[str, bytes]
 
 @dataclass(frozen=True)
 class Answer:
-    """A correct answer: the folder's files, with the answer in its file and in its cell, and the release."""
+    """The `files` of a student's folder, with a correct answer in its file and its cell, and those of the release."""
 
     files: dict[str, bytes]
     released: dict[str, bytes]
@@ -39,7 +39,7 @@ class Answer:
         return {**self.files, BOOK: self.released[BOOK]}
 
     def notebook(self, change: Callable[[dict[str, Any]], None]) -> bytes:
-        """Return the notebook with a change."""
+        """Return the notebook after `change` has modified it."""
         notebook = json.loads(self.files[BOOK])
         change(notebook)
         return json.dumps(notebook).encode()
@@ -55,7 +55,7 @@ def make_answer(scratch: Path) -> Answer:
 
 
 def filled(notebook: bytes, text: str) -> bytes:
-    """Return a notebook with a text in the cell of the exercise."""
+    """Return a notebook with `text` in the cell of the exercise."""
     nb = json.loads(notebook)
     for cell in nb["cells"]:
         if cell["metadata"].get("nbgrader", {}).get("grade_id") == "robot-controller":

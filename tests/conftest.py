@@ -1,4 +1,4 @@
-"""Shared by all tests: activates ROS, gives each test a separate ROS domain, and provides results for reports."""
+"""Fixtures and hooks of all tests: activates ROS, gives each test its own ROS domain, and makes results for reports."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ from xdist.scheduler import LoadScopeScheduling
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.result.model import Artifact, Build, CheckResult, Result, Status
 from autograder.ros import activate
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.domains import Domain
 from autograder.ros.environment import LOGS_TO_STDOUT
 from autograder.run.sandbox.launcher import restore_sigint
 from autograder.suite import Check, Outcome, Visibility
 
-# The same examples in each run, because a test that fails at random is not a gate. `make fuzz` tries others.
+# Each run uses the same examples, because a test that fails at random cannot be a gate. `make fuzz` tries others.
 # Slowness on a busy machine is not a failure.
 _PATIENT = hypothesis.settings(deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])
 hypothesis.settings.register_profile("course", _PATIENT, derandomize=True)
@@ -34,16 +35,18 @@ hypothesis.settings.register_profile("fuzz", _PATIENT, derandomize=False)
 hypothesis.settings.register_profile("thousand", _PATIENT, derandomize=False, max_examples=1000)
 hypothesis.settings.load_profile("course")
 
-# Before any test module imports rclpy. Fixtures that outlive a test use the worker's own domain.
+# ROS is activated before any test module imports rclpy. Fixtures that outlive a test use the worker's own domain.
 _WORKER_DOMAIN = Domain()
-_NEXT = itertools.count(_WORKER_DOMAIN.number)  # a domain just released may still have a participant shutting down
+# Each test gets the next domain, because a participant may still be shutting down in the previous one.
+_NEXT = itertools.count(_WORKER_DOMAIN.number)
 activate(domain=_WORKER_DOMAIN.number)
-os.environ.update(LOGS_TO_STDOUT)  # as for students' programs in the grader and in notebooks
-restore_sigint()  # programs end on Ctrl-C also when the tests are a job in the background
+os.environ.update(LOGS_TO_STDOUT)  # the same as for students' programs in the grader and in notebooks
+restore_sigint()  # programs end on Ctrl-C even if the tests run as a background job
 
 
 _CHAPTER = re.compile(r"\b[0-9]{2}_[a-z_]+")
-# Files of long tests without shared fixtures. The slowest come first, so that all workers end at the same time.
+# Tests in the files of `_SEPARATE` are long and share no fixtures, so each may run on any worker. The slowest tests,
+# those of `_FIRST`, run first, so that all workers end at about the same time.
 _NOTEBOOKS, _VERIFICATION = "tests/notebooks/test_chapters.py", "tests/e2e/test_mutants.py"
 _JUPYTERLAB = "tests/browser/test_solve_in_jupyterlab.py"
 _SEPARATE = (_NOTEBOOKS, _VERIFICATION, "tests/e2e/test_attacks.py", "tests/e2e/test_seeds.py")
@@ -100,7 +103,7 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 
 @pytest.fixture
 def entered_tmp_path(tmp_path: Path) -> Path:
-    """A temporary folder that other users can enter: root's sandboxes run as other users."""
+    """A temporary folder that other users can enter, because root's sandboxes run as other users."""
     for folder in (tmp_path, *(parent for parent in tmp_path.parents if parent.name.startswith(("pytest-", "popen-")))):
         folder.chmod(0o711)
     return tmp_path
@@ -123,7 +126,7 @@ TURNS = _check(
     4,
     "reaction",
     hints=("Where is 0 rad in a scan?", "Compare the smallest forward range with 1.0."),
-    doc="https://docs.ros.org/en/jazzy/p/sensor_msgs/",
+    doc=f"{DISTRIBUTION.docs}/p/sensor_msgs/",
 )
 STOPS = _check("stops", "The robot stops when the scan goes stale.", 2, "safety", needs=("turns",))
 LATE = _check("late", "The robot starts in time.", 1, "safety")
@@ -131,13 +134,13 @@ LATE = _check("late", "The robot starts in time.", 1, "safety")
 
 @pytest.fixture
 def make_check() -> MakeCheck:
-    """Make a check from an id, a title, points and a group."""
+    """Return a function that makes a check from an id, a title, points and a group."""
     return _check
 
 
 @pytest.fixture(scope="session")
 def make_result() -> MakeResult:
-    """Make a result of a flawed submission; keyword arguments replace its fields."""
+    """Return a function that makes the result of a flawed submission. Keyword arguments replace fields."""
 
     def make(student: str = "alice", **fields: Any) -> Result:
         base: dict[str, Any] = {
@@ -166,7 +169,7 @@ def make_result() -> MakeResult:
 
 @pytest.fixture(scope="session")
 def broken_result(make_result: MakeResult) -> Result:
-    """A submission that did not build."""
+    """The result of a submission that did not build."""
     return make_result(
         "bob",
         checks=tuple(CheckResult.of(check, Outcome.NOT_CHECKED, "the build failed") for check in (STARTS, TURNS)),
@@ -177,13 +180,13 @@ def broken_result(make_result: MakeResult) -> Result:
 
 @pytest.fixture
 def ungraded_result(make_result: MakeResult) -> Result:
-    """A submission that the grader failed on."""
+    """The result of a submission on which the grader failed."""
     return make_result("carol", checks=(), status=Status.NOT_GRADED)
 
 
 @pytest.fixture(scope="session")
 def track() -> Callable[..., Artifact]:
-    """Draw a picture of a robot's track into a folder and return its record."""
+    """Return a function that draws a picture of a robot's track into a folder and returns its record."""
 
     def draw(folder: Path, *, check: str = "turns", name: str = "turns.png") -> Artifact:
         figure = Figure(figsize=(6, 4), layout="constrained")

@@ -34,27 +34,27 @@ text {{ font-size: 11px; fill: #222 }} .name {{ font-size: 13px; font-weight: bo
 
 
 def svg(source: Mapping[str, Any]) -> str:
-    """Return the picture of the content of `parts.yaml`."""
-    packages, way = source["packages"], source["way"]
+    """Return the picture of `source`, the content of `parts.yaml`."""
+    packages, steps = source["packages"], source["way"]
     columns, rows = (1 + max(part["at"][axis] for part in packages.values()) for axis in (0, 1))
-    below = MARGIN + rows * ROW
-    width, height = columns * COLUMN + 3 * MARGIN, below + 22 + 20 * -(-len(source["modules"]) // 3) + MARGIN
+    bottom = MARGIN + rows * ROW
+    width, height = columns * COLUMN + 3 * MARGIN, bottom + 22 + 20 * -(-len(source["modules"]) // 3) + MARGIN
     lines = [HEAD % (width, height, width, height)]
     lines += [_arrow(*(packages[name]["at"] for name in arrow.split(" -> "))) for arrow in source["arrows"]]
     for name, part in packages.items():
         lines += _box(name, part)
-    x, y = _corner((columns - 1, 2))  # no box is below the last one of the first rows
+    x, y = _corner((columns - 1, 2))  # the last column has no boxes from its third row on
     lines.append(_text(x, y + 14, "A submission's steps", "name"))
-    for number, step in enumerate(way, start=1):
+    for number, step in enumerate(steps, start=1):
         y += 44
         lines += _step(x + STEP, y - 4, number)
         lines += [_text(x + 24, y, step["step"], "name"), _text(x + 24, y + 15, step["does"])]
     lines.append(_text(x, y + 48, "in italics: runs in the sandbox", "sandbox"))
-    lines.append(_text(MARGIN, below + 8, "Single modules", "name"))
-    numbers = {step["module"]: number for number, step in enumerate(way, start=1) if "module" in step}
-    for index, (name, does) in enumerate(source["modules"].items()):
-        x, y = MARGIN + 20 + index % 3 * 310, below + 30 + index // 3 * 20
-        lines.append(f'<text x="{x}" y="{y}"><tspan class="name">{name}</tspan>  {escape(does)}</text>')
+    lines.append(_text(MARGIN, bottom + 8, "Single modules", "name"))
+    numbers = {step["module"]: number for number, step in enumerate(steps, start=1) if "module" in step}
+    for index, (name, description) in enumerate(source["modules"].items()):
+        x, y = MARGIN + 20 + index % 3 * 310, bottom + 30 + index // 3 * 20
+        lines.append(f'<text x="{x}" y="{y}"><tspan class="name">{name}</tspan>  {escape(description)}</text>')
         lines += _step(x - 12, y - 4, numbers[name]) if name in numbers else []
     return "\n".join([*lines, "</svg>", ""])
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from autograder.lms.hub.configuration import configure
 
-PARENT = Path(__file__).resolve().parents[3]  # of the repository, such as /srv/ros2
+PARENT = Path(__file__).resolve().parents[3]  # the folder that contains the repository, such as /srv/ros2
 
 c = get_config()  # noqa: F821 (traitlets defines it for a configuration file)
 configure(

@@ -1,8 +1,8 @@
 """Describes a student release, and updates it to a later one.
 
-`release.json` in a student release contains the version, the digest of each file, and the digests of each notebook's
-cells. A file or cell with a different digest was changed by the student. In `chapters/`, an update does not touch it.
-Elsewhere, the course's file replaces it, and the student's version is kept beside it.
+`release.json` in a student release contains the version, the digest of each file, and the digest of each cell of the
+notebooks. If the digest of a file or cell differs, the student has changed it. An update does not touch such changes in
+`chapters/`. Elsewhere, the course's file replaces the student's, which is kept beside it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Manifest:
 
     Attributes:
         version: the time of its creation in UTC, so that versions sort chronologically.
-        course: the folder with the newest release of the class, or an empty string.
+        course: the folder in which the class finds its newest release, or an empty string.
         files: the digest of each file, by its path in the release.
         cells: for each notebook, the digest of each cell's text, by the cell's id.
     """
@@ -100,8 +100,10 @@ def update_release(release: Path, newer: Path) -> Update:
             continue
         if is_changed and name.startswith(f"{STUDENT_FOLDER}/"):
             if name.endswith(".ipynb"):
-                merged = _merged(nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {}))
-                write_atomically(target, nbformat.writes(merged).encode())
+                merged_notebook = _merge_notebooks(
+                    nbformat.read(target, 4), nbformat.read(source, 4), old.cells.get(name, {})
+                )
+                write_atomically(target, nbformat.writes(merged_notebook).encode())
                 written.append(name)
             else:
                 skipped.append(name)
@@ -112,14 +114,14 @@ def update_release(release: Path, newer: Path) -> Update:
         shutil.copy2(source, target)
         written.append(name)
     chapters = {name.split("/")[1] for name in new.files if name.startswith(f"{STUDENT_FOLDER}/")}
-    others = {
+    absent_chapter_files = {
         name for name in old.files if name.startswith(f"{STUDENT_FOLDER}/") and name.split("/")[1] not in chapters
     }
-    for name in old.files.keys() - new.files.keys() - others:
+    for name in old.files.keys() - new.files.keys() - absent_chapter_files:
         if (release / name).is_file() and _digest((release / name).read_bytes()) == old.files[name]:
             (release / name).unlink()
-    files = {name: old.files[name] for name in others} | new.files
-    cells = {name: old.cells[name] for name in others & old.cells.keys()} | new.cells
+    files = {name: old.files[name] for name in absent_chapter_files} | new.files
+    cells = {name: old.cells[name] for name in absent_chapter_files & old.cells.keys()} | new.cells
     write_json(release / MANIFEST, asdict(Manifest(new.version, new.course or old.course, files, cells)))
     return Update(written, skipped, backups)
 
@@ -132,8 +134,10 @@ def _back_up(file: Path) -> Path:
     return copy
 
 
-def _merged(student_notebook: NotebookNode, released: NotebookNode, old_digests: dict[str, str]) -> NotebookNode:
-    """Return a student's notebook in which the cells that the student has not changed are updated."""
+def _merge_notebooks(
+    student_notebook: NotebookNode, released: NotebookNode, old_digests: dict[str, str]
+) -> NotebookNode:
+    """Update the cells of a student's notebook that the student has not changed, and return the notebook."""
     new = {cell.id: cell for cell in released.cells}
     cells = []
     for cell in student_notebook.cells:

@@ -1,4 +1,4 @@
-"""Builds the packages of a suite. A failed build ends the grading, or the checks examine it."""
+"""Builds the packages that a suite requires. A failed build ends the grading, unless the suite allows one."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from autograder.submission.packages import Package, read_packages
 
 @dataclass(frozen=True)
 class BuildOutcome:
-    """The build of a suite's packages, and a diagnosis of each package; OK for one that was built."""
+    """The build of a suite's packages, and a diagnosis for each package: OK if it was built."""
 
     build: Build
     diagnoses: Mapping[str, Diagnosis]
@@ -32,10 +32,11 @@ class BuildOutcome:
         return next((diagnosis for diagnosis in self.diagnoses.values() if diagnosis is not OK), OK)
 
 
-def require_packages(source: Path, required: tuple[str, ...], *, whole: bool = True) -> dict[str, Package]:
-    """Return the packages in `source`; a StudentError unless the wanted ones are there, and whole enough for colcon.
+def require_packages(source: Path, required: tuple[str, ...], *, complete: bool = True) -> dict[str, Package]:
+    """Return the packages in `source`; raise a StudentError if a required one is missing or incomplete.
 
-    `whole` says whether each needs the files that every Python package of ROS 2 has; if not, colcon is left to judge.
+    If `complete` is set, each required package needs the files that every Python package of ROS 2 has. Otherwise,
+    colcon decides whether a package is complete.
     """
     packages, broken = read_packages(source)
     for name in required:
@@ -46,7 +47,7 @@ def require_packages(source: Path, required: tuple[str, ...], *, whole: bool = T
         if package is None:
             raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, _missing(source, name, packages)))
         folder = package.folder
-        if not whole or (folder / "CMakeLists.txt").is_file():
+        if not complete or (folder / "CMakeLists.txt").is_file():
             continue
         for part in ("setup.py", "setup.cfg", f"resource/{name}", f"{name}/__init__.py"):
             if not (folder / part).exists():
@@ -55,37 +56,37 @@ def require_packages(source: Path, required: tuple[str, ...], *, whole: bool = T
     return packages
 
 
-def build(workspace: Workspace, required: tuple[str, ...], *, whole: bool = False) -> Build:
-    """Build the wanted packages of a workspace, and those that they depend on, with colcon.
+def build(workspace: Workspace, required: tuple[str, ...], *, complete: bool = False) -> Build:
+    """Build the required packages of a workspace, and those that they depend on, with colcon.
 
-    Its interface packages come from the cache of builds, where the very same ones were built before. The detail of the
-    StudentError of a failed build holds the end of colcon's output. A package is required as `require_packages` says.
+    Interface packages are taken from the cache of builds if identical ones were built before. If a build fails, the
+    detail of the StudentError contains the end of colcon's output. `require_packages` explains `complete`.
     """
-    started = time.monotonic()
-    packages = require_packages(workspace.root / "src", required, whole=whole)
+    start = time.monotonic()
+    packages = require_packages(workspace.root / "src", required, complete=complete)
     bundle = interface_bundle(packages, required)
     if bundle:
         install_bundle(bundle, workspace)
     if set(required) - set(bundle):
-        skipped = ["--packages-skip", *bundle] if bundle else []
+        skip_options = ["--packages-skip", *bundle] if bundle else []
         folders = [package.folder for package in packages.values()]
-        colcon_build(workspace, folders, "--packages-up-to", *required, *skipped)
-    return Build(True, round(time.monotonic() - started, 2), tuple(sorted(packages)))
+        colcon_build(workspace, folders, "--packages-up-to", *required, *skip_options)
+    return Build(True, round(time.monotonic() - start, 2), tuple(sorted(packages)))
 
 
 def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail: bool = False) -> BuildOutcome:
     """Build packages of a workspace.
 
-    If a build may fail, and does, each package is built separately, so that an error in one does not affect another.
-    Then colcon alone decides whether a package is complete.
+    If the build fails and `may_fail` is set, each package is built separately, so that an error in one does not affect
+    another. In this case, colcon decides whether a package is complete.
 
     Raises:
-        StudentError: a required package is missing or does not build; a limit ended a build; or the build left files
+        StudentError: a required package is missing or does not build, a limit ended a build, or the build created files
             that must not be read.
     """
     source = workspace.root / "src"
     try:
-        return BuildOutcome(build(workspace, packages, whole=not may_fail), dict.fromkeys(packages, OK))
+        return BuildOutcome(build(workspace, packages, complete=not may_fail), dict.fromkeys(packages, OK))
     except StudentError as error:
         if not may_fail or isinstance(error, StoppedBuildError):
             raise StudentError(explain(error.diagnosis, source, *packages)) from None
@@ -101,11 +102,11 @@ def build_workspace(workspace: Workspace, packages: tuple[str, ...], *, may_fail
         except StudentError as error:
             builds.append(Build(False, 0.0, log=error.diagnosis.detail))
             diagnoses[name] = explain(error.diagnosis, source, name)
-    require_contained(workspace.install)  # a build that failed was not looked at yet
-    seen = tuple(sorted({name for each in builds for name in each.packages}))
-    log = "\n".join(filter(None, (each.log for each in builds)))
-    seconds = round(math.fsum(each.seconds for each in builds), 2)
-    return BuildOutcome(Build(all(each.ok for each in builds), seconds, seen, log), diagnoses)
+    require_contained(workspace.install)  # not yet done after a failed build
+    names = tuple(sorted({name for single in builds for name in single.packages}))
+    log = "\n".join(filter(None, (single.log for single in builds)))
+    seconds = round(math.fsum(single.seconds for single in builds), 2)
+    return BuildOutcome(Build(all(single.ok for single in builds), seconds, names, log), diagnoses)
 
 
 def _missing(source: Path, name: str, packages: Collection[str]) -> str:

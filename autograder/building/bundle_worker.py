@@ -1,4 +1,4 @@
-"""The worker that builds interface packages for the cache. It sees their sources, and no submission.
+"""The worker that builds interface packages for the cache. It receives their sources, but no submission.
 
 python -m autograder.building.bundle_worker SCRATCH DESCRIPTOR
 """
@@ -9,8 +9,8 @@ import sys
 from multiprocessing.connection import Connection
 from pathlib import Path
 
+from autograder.building.bundle_server import failure_message
 from autograder.building.interface_bundle import build_alone
-from autograder.building.keeper import refused
 from autograder.exceptions import StudentError
 from autograder.ros import activate
 from autograder.run.sandbox.launcher import restore_sigint
@@ -21,7 +21,7 @@ from autograder.submission.reading import reading
 
 
 def main() -> None:
-    """Build the packages that arrive over the line, and send the installed files back."""
+    """Build the packages that are received over the line, and send the installed files back."""
     scratch = Path(sys.argv[1])
     restore_sigint()
     ros = activate()
@@ -33,7 +33,7 @@ def main() -> None:
             with reading("What your interface packages install"):
                 built = build_alone(workspace)
         except StudentError as error:
-            send_message(line, refused(error))
+            send_message(line, failure_message(error))
         else:
             send_message(line, {})
             send_tree(line, built)

@@ -1,8 +1,8 @@
-"""A submission's interface packages as one bundle: built separately by colcon, and kept for equal submissions.
+"""Builds the interface packages of a submission as one bundle, which submissions with the same packages share.
 
-Building messages takes ten times as long as building nodes, and most of a class has the same messages. The bundle is
-built in a separate workspace, so a cache entry depends only on the content that is its key. The output of students'
-build files is used only in sandboxes. `keeper` keeps the bundles; a worker has no cache.
+Building messages takes ten times as long as building nodes, and most students of a class have the same messages. The
+bundle is built in a separate workspace, so a cache entry depends only on the content that is its key. The output of
+students' build files is used only in sandboxes. A worker has no cache: it requests bundles from `bundle_server`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.building.colcon import colcon_build, read_installed, require_contained
 from autograder.building.interfaces import Cache
 from autograder.diagnosis import Diagnosis, Kind
@@ -27,45 +27,47 @@ from autograder.run.workspace import Workspace
 from autograder.submission.packages import Package
 
 GROUP = "rosidl_interface_packages"
-NOTE = "bundle.json"
+METADATA = "bundle.json"
 HOOKS = (".sh", ".bash", ".zsh", ".ps1", ".dsv", ".py")
 
 
 def interface_bundle(packages: Mapping[str, Package], required: tuple[str, ...]) -> dict[str, Path]:
-    """Return the folders of the interface packages among the wanted ones and those that they depend on, by name.
+    """Return the folders of the interface packages among the required packages and their dependencies, by name.
 
-    A bundle that needs any other package of the submission is none: colcon then builds everything together.
+    If one of them depends on another kind of package of the submission, the bundle is empty, and colcon builds
+    everything together.
     """
-    needed = _closure(packages, required)
-    bundle = {name: packages[name].folder for name in needed if _is_interface(packages[name])}
+    needed_names = _closure(packages, required)
+    bundle = {name: packages[name].folder for name in needed_names if _is_interface(packages[name])}
     return bundle if _closure(packages, tuple(bundle)) == set(bundle) else {}
 
 
 def install_bundle(bundle: dict[str, Path], workspace: Workspace) -> None:
-    """Put a bundle's built packages into a workspace's install space.
+    """Install a bundle's built packages in a workspace.
 
-    A failed build has run programs of the submission, which may have written to the space.
+    The install space is checked first, because programs of the submission may have written to it in a failed build.
     """
     require_contained(workspace.install)
     tree = _sources(bundle)
-    with workspace.apart() as folder:
+    with workspace.private_folder() as folder:
         entry = folder / "bundle"
-        with line.held() as connection:
+        with line.exclusive_line() as connection:
             if connection is None:
-                with Cache.default(keeper.CACHE).use(keeper.key(tree), partial(_make, tree, workspace, folder)) as made:
-                    shutil.copytree(made, entry, symlinks=True)
+                make = partial(_make, tree, workspace, folder)
+                with Cache.default(bundle_server.CACHE).use(bundle_server.key(tree), make) as built:
+                    shutil.copytree(built, entry, symlinks=True)
             else:
-                keeper.ask(connection, tree, entry)
-        note = json.loads((entry / NOTE).read_text())
+                bundle_server.request_build(connection, tree, entry)
+        metadata = json.loads((entry / METADATA).read_text())
         for name in bundle:
-            if (workspace.install / name).is_dir():  # for another package that needs it, too
+            if (workspace.install / name).is_dir():  # an earlier build of this grading has installed it
                 continue
             shutil.copytree(entry / "install" / name, workspace.install / name, symlinks=True)
-            relocate(workspace.install / name, note["install"], str(workspace.install))
+            relocate(workspace.install / name, metadata["install"], str(workspace.install))
 
 
 def _sources(bundle: dict[str, Path]) -> dict[Entry, bytes]:
-    """Read a bundle's sources, a folder for each package."""
+    """Read the sources of a bundle into a tree with a folder for each package."""
     tree: dict[Entry, bytes] = {}
     try:
         for name, folder in bundle.items():
@@ -84,32 +86,34 @@ def _below(folder: str, entry: Entry) -> Entry:
 
 
 def _make(tree: Mapping[Entry, bytes], workspace: Workspace, folder: Path, entry: Path) -> None:
-    alone = replace(workspace, root=folder / "alone")
-    write_received(tree, alone.root / "src")
-    write_received(build_alone(alone), entry)
+    bundle_workspace = replace(workspace, root=folder / "alone")
+    write_received(tree, bundle_workspace.root / "src")
+    write_received(build_alone(bundle_workspace), entry)
 
 
 def build_alone(workspace: Workspace) -> dict[Entry, bytes]:
-    """Build all packages of a workspace that contains only a bundle's sources; return the installed files and the note.
+    """Build all packages of a workspace that contains only a bundle's sources; return the installed files and metadata.
 
     Raises:
-        StudentError: they do not build, or install nothing, or install something that is not allowed.
+        StudentError: they do not build, install nothing, or install files that are not allowed.
     """
     folders = sorted((workspace.root / "src").iterdir())
     names = [folder.name for folder in folders]
     colcon_build(workspace, folders, "--packages-select", *names)
-    installed = read_installed(workspace.install)
+    installed_files = read_installed(workspace.install)
     for name in names:
-        if Entry(name, "folder") not in installed:
+        if Entry(name, "folder") not in installed_files:
             sentence = f"colcon built {name} but installed nothing of it: look at its package.xml and CMakeLists.txt."
             raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
-    note = json.dumps({"install": str(workspace.install)}).encode()
-    kept = {_below("install", entry): data for entry, data in installed.items() if entry.path.split("/")[0] in names}
-    return {Entry(NOTE, "file", size=len(note)): note, Entry("install", "folder"): b"", **kept}
+    metadata = json.dumps({"install": str(workspace.install)}).encode()
+    files = {
+        _below("install", entry): data for entry, data in installed_files.items() if entry.path.split("/")[0] in names
+    }
+    return {Entry(METADATA, "file", size=len(metadata)): metadata, Entry("install", "folder"): b"", **files}
 
 
 def relocate(prefix: Path, old: str, new: str) -> None:
-    """Let colcon's own scripts of a package name the place where it is now; everything else in it is relative."""
+    """Replace the old install path in the scripts that colcon wrote for a package. All other paths are relative."""
     for path in prefix.glob("share/*/*"):
         if path.suffix in HOOKS and path.is_file() and not path.is_symlink():
             text = path.read_bytes()
@@ -118,15 +122,15 @@ def relocate(prefix: Path, old: str, new: str) -> None:
 
 
 def _closure(packages: Mapping[str, Package], required: tuple[str, ...]) -> set[str]:
-    """Return the wanted packages and all packages of the submission below them."""
-    seen: set[str] = set()
+    """Return the required packages and all their dependencies in the submission."""
+    names: set[str] = set()
     pending = [name for name in required if name in packages]
     while pending:
         name = pending.pop()
-        if name not in seen:
-            seen.add(name)
+        if name not in names:
+            names.add(name)
             pending += [other for other in packages[name].depends if other in packages]
-    return seen
+    return names
 
 
 def _is_interface(package: Package) -> bool:

@@ -3,8 +3,9 @@
     from autograder.checking import AutoHarness, Workspace, expect, group, hint
     from autograder.checking.probes import parameters
 
-`probes` has modules that inspect a package or a running program, `temporal` judges rules over time, and `attacks` has
-what a chapter's `attacks.py` needs. The rest of the autograder may change without notice.
+`probes` has modules that inspect a package or a running program, `drawn_cases` tests a rule with cases that Hypothesis
+draws, `temporal` evaluates temporal rules, and `attacks` has the classes and payloads for a chapter's `attacks.py`. The
+other parts of the autograder may change without notice.
 """
 
 from autograder.building.interfaces import load_interfaces

@@ -1,4 +1,4 @@
-"""For the `attacks.py` of a chapter: malicious submissions, made of the reference, mutants and payloads."""
+"""The interface for a chapter's `attacks.py`: malicious submissions made from the reference, mutants and payloads."""
 
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.payloads import (

@@ -1,6 +1,6 @@
 """Modules that inspect a student's package or running program, such as `parameters` or `linters`.
 
-A module is imported when it is first asked for, so that a grading loads only those that its checks use.
+A module is imported on first use, so that a grading loads only the modules that its checks use.
 """
 
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""Rules over time, judged on a recorded run. A module of its own, because rtamt is slow to import."""
+"""Evaluates temporal rules on a recorded run. This is a separate module, because rtamt is slow to import."""
 
 from autograder.suite.temporal import Verdict, always
 

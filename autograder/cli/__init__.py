@@ -26,10 +26,10 @@ VERBS = (
 
 
 class Verbs(click.Group):
-    """The verbs. Each is a command in a module of the same name, which is imported when the verb is called."""
+    """The verbs. Each is a command in a module of its name, and the module is imported when the verb is called."""
 
     def main(self, *args: Any, **extra: Any) -> Any:
-        """Run a verb, and exit. Clean click's usage errors, which may contain the name of a student's file."""
+        """Run a verb, and exit. Usage errors of click are cleaned, because they may quote a student's file name."""
         try:
             status = super().main(*args, **{**extra, "standalone_mode": False})
         except click.ClickException as error:
@@ -53,7 +53,7 @@ class Verbs(click.Group):
 
 
 def _set_course(context: click.Context, option: click.Parameter, course: Path | None) -> None:
-    """Set the course for all later imports and child processes, which read it through `autograder.course_paths`."""
+    """Set the variable in which `autograder.course_paths` looks for the course, here and in child processes."""
     if course is not None:
         os.environ["AUTOGRADER_COURSE"] = str(course.resolve())
 

@@ -1,4 +1,4 @@
-"""`autograder check`: runs the visible checks in a terminal."""
+"""`autograder check`: runs the visible checks, and prints their results in a terminal."""
 
 from __future__ import annotations
 

@@ -25,32 +25,32 @@ def compare(old: Path, new: Path, json_file: Path | None) -> None:
     OLD and NEW are folders that `autograder grade --out` wrote, or JSON files. After changing a suite, grade the class
     into another folder and compare the two.
     """
-    changed = changes(export.load(old), export.load(new))
-    print_changes(changed)
-    students = f"{len(changed)} {'student' if len(changed) == 1 else 'students'}"
-    echo(f"{students} with a different result" if changed else "No result has changed.")
+    student_changes = changes(export.load(old), export.load(new))
+    print_changes(student_changes)
+    students = f"{len(student_changes)} {'student' if len(student_changes) == 1 else 'students'}"
+    echo(f"{students} with a different result" if student_changes else "No result has changed.")
     if json_file is not None:
-        write_json(json_file, [asdict(change) for change in changed])
+        write_json(json_file, [asdict(change) for change in student_changes])
 
 
-def print_changes(changed: Iterable[Change]) -> None:
+def print_changes(student_changes: Iterable[Change]) -> None:
     """Print the students whose results differ, their marks, and the checks that differ."""
-    for change in changed:
-        marks = f"{_number(change.before)} -> {_number(change.after)}"
-        echo(f"{on_line(change.student)} ({on_line(change.assignment)}): {marks}{_note(change)}")
+    for change in student_changes:
+        marks = f"{_number_text(change.before)} -> {_number_text(change.after)}"
+        echo(f"{on_line(change.student)} ({on_line(change.assignment)}): {marks}{_submission_note(change)}")
         for check in change.checks:
-            echo(f"    {on_line(check.id)}: {_points(check)}")
+            echo(f"    {on_line(check.id)}: {_points_text(check)}")
 
 
-def _note(change: Change) -> str:
+def _submission_note(change: Change) -> str:
     if change.before is None or change.after is None or change.same_submission:
         return ""
     return ", for a different submission"
 
 
-def _points(check: CheckChange) -> str:
-    return f"{_number(check.before, 'not in the suite')} -> {_number(check.after, 'not in the suite')}"
+def _points_text(check: CheckChange) -> str:
+    return f"{_number_text(check.before, 'not in the suite')} -> {_number_text(check.after, 'not in the suite')}"
 
 
-def _number(points: float | None, missing: str = "no mark") -> str:
+def _number_text(points: float | None, missing: str = "no mark") -> str:
     return missing if points is None else f"{points:g}"

@@ -8,7 +8,7 @@ import click
 
 from autograder import course_paths
 from autograder.author.course.chapter_rules import read_chapter, require_checks
-from autograder.author.course.course_rules import broken_course, broken_course_file
+from autograder.author.course.course_rules import course_file_findings, course_findings
 from autograder.author.course.sync import chapters, sync_chapter
 from autograder.author.course.tables import course_page, titles
 from autograder.author.verification.checks_page import checks_page
@@ -27,9 +27,9 @@ def course() -> None:
 @click.option("--dry-run", is_flag=True, help="Write nothing. List what would be updated.")
 def sync(names: tuple[str, ...], dry_run: bool) -> None:
     """Copy the reference into notebooks, and the points of the suites into grade cells."""
-    selected = chapters(names)
-    require_checks(chapter.assignment for chapter in selected)
-    for chapter in selected:
+    selected_chapters = chapters(names)
+    require_checks(chapter.assignment for chapter in selected_chapters)
+    for chapter in selected_chapters:
         differences = sync_chapter(chapter, write=not dry_run)
         for finding in differences if dry_run else ():
             echo(str(finding))
@@ -45,10 +45,10 @@ def check(names: tuple[str, ...]) -> None:
     Nothing is graded: `autograder verify` does that. Without an ID, the whole course is checked. The exit status is 1
     if there are problems.
     """
-    if not (problems := list(broken_course_file())):
-        parsed = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
-        problems = [finding for chapter in parsed.values() for finding in chapter.findings]
-        problems += broken_course(parsed, whole=not names)
+    if not (problems := list(course_file_findings())):
+        parsed_chapters = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
+        problems = [finding for chapter in parsed_chapters.values() for finding in chapter.findings]
+        problems += course_findings(parsed_chapters, whole=not names)
     for line in dict.fromkeys(map(str, problems)):
         echo(line)
     sys.exit(1 if problems else 0)
@@ -62,6 +62,7 @@ def tables() -> None:
     for finding in problems:
         echo(str(finding))
     course = course_paths.course()
+    # The first page is generated, but in Git: a forge shows it to readers of `chapters/`. A test says if it is old.
     pages = {course_paths.CHAPTERS / "README.md": page, course.root / course.guide: checks_page()}
     for path, text in {**titles(), **pages}.items():
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -51,6 +51,6 @@ def demo(jobs: int, isolation: str, json_file: Path | None) -> None:
             )
     write_json(out / "results.json", [result.to_json() for result in results])
     report(results, out, json_file)
-    reference, *flawed = results
-    is_expected = reference.percent == 100.0 and all(result.percent < 100.0 for result in flawed)
+    reference, *flawed_results = results
+    is_expected = reference.percent == 100.0 and all(result.percent < 100.0 for result in flawed_results)
     sys.exit(0 if is_expected else 1)

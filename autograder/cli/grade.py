@@ -16,13 +16,13 @@ from autograder.cli.submissions import find_submissions, roster_option
 from autograder.cli.terminal import INTERRUPTED, echo, on_line
 from autograder.cli.text_tables import failure_summary, score_text, table
 from autograder.exceptions import StudentError, UsageError
-from autograder.grade.apart import read_preview
-from autograder.grade.batch import GradeEach, grade_all, stored
+from autograder.grade.batch import GradeJobs, grade_all, stored_result
+from autograder.grade.isolated_reader import read_preview
 from autograder.grade.job import Job
 from autograder.grade.store import LOG, RESULT
 from autograder.report import feedback
 from autograder.report.export import load
-from autograder.report.export.earlier import EarlierMarks
+from autograder.report.export.earlier_marks import EarlierMarks
 from autograder.result.model import Result, Status, write_json
 from autograder.run.sandbox import Isolation
 from autograder.suite import suites
@@ -89,18 +89,18 @@ def grade(
     suites.hidden(assignment)
     if dry_run:
         with find_submissions(paths, assignment, roster) as (submissions, all_match):
-            jobs_to_do = [
+            preview_jobs = [
                 Job(path, assignment, name, seed, out / name, Isolation(isolation))
                 for name, path in submissions.items()
             ]
-            sys.exit(0 if _preview(jobs_to_do, resume) and all_match else 1)
+            sys.exit(0 if _print_preview(preview_jobs, resume) and all_match else 1)
     with (
         find_submissions(paths, assignment, roster, out=out) as (submissions, all_match),
         Progress(len(submissions)) as progress,
     ):
-        earlier = EarlierMarks(out, submissions)
+        earlier_marks = EarlierMarks(out, submissions)
         try:
-            with _cluster_grader(scheduler, jobs, certificates) as grade_each:
+            with _cluster_grader(scheduler, jobs, certificates) as grade_jobs:
                 results = grade_all(
                     submissions,
                     assignment,
@@ -110,17 +110,17 @@ def grade(
                     isolation=Isolation(isolation),
                     resume=resume,
                     on_result=progress.show,
-                    grade_each=grade_each,
+                    grade_jobs=grade_jobs,
                 )
         except KeyboardInterrupt:
             message = f"Stopped. Finished results are in {out}: the same command with --resume grades the rest."
             echo(f"\n{message}", err=True)
             sys.exit(INTERRUPTED)
     report(results, out, json_file)
-    if resume and (changed_marks := earlier.changed(results)):
+    if resume and (changed_marks := earlier_marks.changed(results)):
         echo("\nMarks that changed because of the suite or the submission:")
         print_changes(changed_marks)
-    earlier.forget(results)
+    earlier_marks.forget(results)
     sys.exit(0 if all_match and all(result.status is Status.GRADED for result in results) else 1)
 
 
@@ -133,7 +133,7 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
         "\n" + table([(r.student, score_text(r), failure_summary(r)) for r in results], ("submission", "marks", "why"))
     )
     for result in results:
-        for note in filter(None, (*result.notices, _not_used(result.unused))):
+        for note in filter(None, (*result.notices, _unused_note(result.unused))):
             echo(f"{on_line(result.student)}: {on_line(note)}")
     for result in results:
         if result.status is Status.UNCLEAR:
@@ -148,11 +148,15 @@ def report(results: Sequence[Result], out: Path, json_file: Path | None) -> None
         write_json(json_file, [result.to_json() for result in results])
 
 
-def _preview(jobs: Sequence[Job], resume: bool) -> bool:
-    """Print the files of each submission to grade and the effect on its result. Return whether all are clear."""
+def _print_preview(jobs: Sequence[Job], resume: bool) -> bool:
+    """Print which files of each submission would be graded, and what would happen to its stored result.
+
+    Returns:
+        Whether it is clear for every submission which files to grade.
+    """
     rows, all_clear = [], True
     for job in jobs:
-        effect = _effect(job, resume)
+        effect = _describe_effect(job, resume)
         try:
             preview = read_preview(job.path, job.assignment, job.isolation)
         except StudentError as error:
@@ -160,18 +164,18 @@ def _preview(jobs: Sequence[Job], resume: bool) -> bool:
             all_clear = False
             continue
         files = "the notebook has to run" if preview.files is None else f"{preview.files} files are graded"
-        rows.append((job.student, effect, files, on_line(" ".join((*preview.notices, _not_used(preview.unused))))))
+        rows.append((job.student, effect, files, on_line(" ".join((*preview.notices, _unused_note(preview.unused))))))
     echo(table(rows, ("submission", "result", "status", "notes")))
     echo("Nothing was graded or written.")
     return all_clear
 
 
-def _effect(job: Job, resume: bool) -> str:
-    """Describe the effect of grading on the stored result."""
+def _describe_effect(job: Job, resume: bool) -> str:
+    """Describe what grading would do to the stored result."""
     file = job.out / RESULT
     if not file.is_file():
         return "new"
-    if resume and (reusable := stored(job)) is not None:
+    if resume and (reusable := stored_result(job)) is not None:
         return f"keeps {score_text(reusable)}"
     try:
         (previous,) = load(file)
@@ -180,13 +184,13 @@ def _effect(job: Job, resume: bool) -> str:
     return f"replaces {score_text(previous)}"
 
 
-def _not_used(names: Sequence[str]) -> str:
+def _unused_note(names: Sequence[str]) -> str:
     return f"Not used: {', '.join(names)}." if names else ""
 
 
 @contextmanager
-def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Iterator[GradeEach | None]:
-    """Yield the function that grades on a cluster, or None if the class is graded on this machine."""
+def _cluster_grader(scheduler: str | None, jobs: int, certificates: Path) -> Iterator[GradeJobs | None]:
+    """Yield the function that grades on a cluster, or None if submissions are graded on this machine."""
     if scheduler is None:
         yield None
         return
@@ -216,7 +220,7 @@ class Progress:
         self._bar.render_finish()
 
     def show(self, result: Result, name: str = "", marks: str = "") -> None:
-        """Count another result. A line shows its `name`, or its student, and its `marks`, or its score."""
+        """Count another result. If lines are printed, they show `name` (or the student) and `marks` (or the score)."""
         self._bar.update(1)
         if self._plain:
             echo(f"[{self._bar.pos}/{self._total}] {on_line(name or result.student)}: {marks or score_text(result)}")

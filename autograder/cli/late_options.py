@@ -68,7 +68,7 @@ def late_options(command: Command) -> Command:
 
 
 def read_policy(find_student: FindStudent, options: dict[str, Any]) -> LatePolicy:
-    """Return the policy from the options. Raises UsageError if they conflict, or if a file or time is invalid."""
+    """Return the policy that the options describe. Raises UsageError if they conflict, or a file or time is invalid."""
     if options["late_penalty"] and options["late_per_day"]:
         raise UsageError("--late-penalty is for all late submissions, --late-per-day for each day: give one of the two")
     text, extensions = options["due"], options["extensions"]
@@ -88,7 +88,7 @@ def read_policy(find_student: FindStudent, options: dict[str, Any]) -> LatePolic
 
 
 def class_lateness(policy: LatePolicy, results: Path, students: Iterable[str]) -> dict[str, Lateness]:
-    """Return the lateness of students' submissions, based on the times recorded by `autograder grade --roster`."""
+    """Return how late each student's submission was, according to what `autograder grade --roster` recorded."""
     file = results / COLLECTION_REPORT
     report = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
     late, late_by, times = set(report.get("late", ())), report.get("late_by", {}), report.get("times", {})

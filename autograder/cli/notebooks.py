@@ -39,8 +39,8 @@ def notebooks(
     from autograder.ros import activate
 
     activate()
-    requested = {Form.SOURCE: source, Form.SOLVED: solved, Form.RELEASED: released}
-    forms = [form for form, is_requested in requested.items() if is_requested] or [Form.SOURCE]
+    requested_forms = {Form.SOURCE: source, Form.SOLVED: solved, Form.RELEASED: released}
+    forms = [form for form, is_requested in requested_forms.items() if is_requested] or [Form.SOURCE]
     to_run = [(chapter, form) for form in forms for chapter in chapters(assignments)]
 
     def run(chapter_and_form: tuple[Chapter, Form]) -> Execution:

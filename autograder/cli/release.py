@@ -29,7 +29,7 @@ def release(names: tuple[str, ...], out: Path, newest: str, json_file: Path | No
     autograder. It contains no hidden checks and no solutions. `autograder update` updates a student's folder to a later
     release.
     """
-    written = write_release(out, names, newest)
-    echo(f"{out}: {', '.join(written)}")
+    released_chapters = write_release(out, names, newest)
+    echo(f"{out}: {', '.join(released_chapters)}")
     if json_file is not None:
-        write_json(json_file, {"out": str(out), "assignments": written})
+        write_json(json_file, {"out": str(out), "assignments": released_chapters})

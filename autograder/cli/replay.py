@@ -51,8 +51,8 @@ def replay(
         raise UsageError("--mcap needs --submission PATH: the stored run has no messages, only a new grading has")
     original = _single_result(stored)
     if check not in {result_check.id for result_check in original.checks}:
-        known = ", ".join(result_check.id for result_check in original.checks)
-        raise UsageError(f"{stored}: the result has no check {check!r}; it has: {known}")
+        known_checks = ", ".join(result_check.id for result_check in original.checks)
+        raise UsageError(f"{stored}: the result has no check {check!r}; it has: {known_checks}")
     folder = original.folder / "replay" / check
     with tempfile.TemporaryDirectory(prefix="replay-") as scratch:
         if submission is not None:
@@ -79,12 +79,12 @@ def _grade_again(
 ) -> Result:
     """Grade a check and its dependencies again with the seed of its result."""
     options = Options(only=suites.hidden(result.assignment).with_dependencies(check), recordings=recordings)
-    regraded = grade_submission(
+    new_result = grade_submission(
         Job(submission, result.assignment, result.student, result.seed, out, isolation, options)
     )
-    if regraded.status is Status.GRADED and regraded.submission_sha256 != result.submission_sha256:
+    if new_result.status is Status.GRADED and new_result.submission_sha256 != result.submission_sha256:
         echo(f"Note: {submission} differs from the graded submission, so the run may differ.", err=True)
-    return regraded
+    return new_result
 
 
 def _bags(recordings: Path, out: Path) -> Iterator[Path]:
@@ -94,5 +94,5 @@ def _bags(recordings: Path, out: Path) -> Iterator[Path]:
     for path in sorted(recordings.glob("*.npz")):
         bag = out / path.stem
         if bag.exists():
-            shutil.rmtree(bag)  # from an earlier replay
+            shutil.rmtree(bag)  # the bag of an earlier replay
         yield to_mcap(load_recording(path), bag)

@@ -29,7 +29,7 @@ def ros(command: tuple[str, ...]) -> None:
 def _run(command: tuple[str, ...]) -> int:
     """Replace this process by the command, or print the variables. Return the exit status if that fails."""
     try:
-        # A command and its child processes keep this domain. Variables that are only printed do not reserve it.
+        # A command and its child processes keep this domain. If the variables are only printed, nothing reserves it.
         domain = None if os.environ.get("ROS_DOMAIN_ID") else Domain(user=os.getuid())
         number = None if domain is None else domain.number
         if not command:
@@ -38,7 +38,7 @@ def _run(command: tuple[str, ...]) -> int:
             return 0
         activate(domain=number)
         if domain is not None:
-            domain.keep_in_next_program()
+            domain.keep_across_exec()
         os.execvp(command[0], command)
     except RosError as error:
         click.echo(f"ROS 2: {error}.", err=True)

@@ -38,10 +38,8 @@ def serve(settings: Path, data: Path, jobs: int, check: bool, seed: int, isolati
     if check:
         for name, rules in service_settings.assignments.items():
             due = f"due at {rules.due:%Y-%m-%d %H:%M %Z}" if rules.due is not None else "never due"
-            counting = "best" if rules.best_counts else "last"
-            echo(
-                f"{name}: {due}, {rules.tries_a_day} tries a day, shows {rules.shown.value}, the {counting} one counts"
-            )
+            counted = "best" if rules.best_counts else "last"
+            echo(f"{name}: {due}, {rules.tries_a_day} tries a day, shows {rules.shown.value}, the {counted} one counts")
         return
     try:
         from autograder.lms.serve import service

@@ -16,7 +16,7 @@ from autograder.cli.options import json_option
 from autograder.cli.submissions import find_submissions, roster_option
 from autograder.cli.terminal import echo, on_line
 from autograder.exceptions import AutograderError, StudentError, UsageError
-from autograder.grade.apart import code, read_code
+from autograder.grade.isolated_reader import code, read_code
 from autograder.result.model import write_json
 from autograder.run.sandbox import Isolation
 from autograder.submission.intake import read_submission
@@ -67,26 +67,26 @@ def similar(
             read_submission(Path(scratch) / "given" / course_paths.course().chapters / assignment, assignment)
         )
     with find_submissions(paths, assignment, roster, verb="compared") as (submissions, all_match):
-        codes, all_read = _codes(submissions, assignment)
+        codes, all_read = _read_codes(submissions, assignment)
     comparison = compare(codes, provided_code, min_percent / 100, report_partial)
     for student in comparison.without_own_code:
         echo(f"Not compared: {on_line(student)}: it contains no code of its own", err=True)
-    compared = len(codes) - len(comparison.without_own_code)
-    if compared < 2:
+    compared_count = len(codes) - len(comparison.without_own_code)
+    if compared_count < 2:
         hint = "; for a download from an LMS, give its table of students with --roster" if roster is None else ""
-        own_code = "1 contains code of its own" if compared else "0 contain code of their own"
+        own_code = "1 contains code of its own" if compared_count else "0 contain code of their own"
         raise AutograderError(f"nothing was compared: of {len(submissions)} submissions, {own_code}{hint}")
     for group in comparison.groups:
-        echo(_sentence(group))
+        echo(_group_sentence(group))
     groups = f"{len(comparison.groups)} {'group' if len(comparison.groups) == 1 else 'groups'}"
-    echo(f"{compared} compared, {groups} to read (not a verdict): {write_page(comparison, out)}")
+    echo(f"{compared_count} compared, {groups} to read (not a verdict): {write_page(comparison, out)}")
     if json_file is not None:
         write_json(json_file, [_as_json(group) for group in comparison.groups])
     sys.exit(0 if all_match and all_read else 1)
 
 
-def _codes(submissions: Mapping[str, Path], assignment: str) -> tuple[dict[str, str], bool]:
-    """Return the code of each submission, and whether all are readable. Students who share one have a joint entry."""
+def _read_codes(submissions: Mapping[str, Path], assignment: str) -> tuple[dict[str, str], bool]:
+    """Return the code of each submission, and whether all can be read. Students with one submission share an entry."""
     students: dict[Path, list[str]] = {}
     for student, path in submissions.items():
         students.setdefault(path, []).append(student)
@@ -105,7 +105,7 @@ def _as_json(group: Group) -> dict[str, object]:
     return {"students": group.names, "pairs": pairs}
 
 
-def _sentence(group: Group) -> str:
+def _group_sentence(group: Group) -> str:
     *others, last = map(on_line, group.names)
     if len(others) == 1:
         percent = " and ".join(f"{100 * share:.0f} %" for share in group.pairs[0].shares)

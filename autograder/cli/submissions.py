@@ -17,7 +17,8 @@ from autograder.lms.roster import read_roster
 from autograder.result.class_folder import COLLECTION_REPORT
 from autograder.result.model import write_json
 
-REPORT_FIELDS = ("late", "late_by", "times", "older", "unmatched", "missing")  # of `CollectedSubmissions`
+# The attributes of `CollectedSubmissions` that are written to the report of a download.
+REPORT_FIELDS = ("late", "late_by", "times", "older", "unmatched", "missing")
 roster_option = click.option(
     "--roster",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
@@ -31,27 +32,31 @@ def find_submissions(
 ) -> Iterator[tuple[Mapping[str, Path], bool]]:
     """Yield the submissions by student, and whether every item matches a student.
 
-    Items that match no student are printed as not `verb`. Late and missing students of a download are printed, and
-    written to the folder `out`, if given.
+    Items that match no student are printed as "Not graded" (or another `verb`). The late and the missing students of a
+    download are printed, and written to the folder `out` if it is given.
     """
     if roster is None:
-        discovered = discover(paths, assignment)
-        _print_others(discovered.others, verb)
-        yield discovered.submissions, not discovered.others
+        discovered_submissions = discover(paths, assignment)
+        _print_others(discovered_submissions.others, verb)
+        yield discovered_submissions.submissions, not discovered_submissions.others
         return
     if len(paths) != 1:
         raise UsageError("--roster needs exactly one download: a zip or a folder")
     with unpacked(paths[0]) as folder, TemporaryDirectory(prefix="attempts-") as scratch:
-        collected = collect(folder, read_roster(roster), assignment, Path(scratch))
-        _print_others(collected.unmatched, verb)
-        names_by_label = {"Not submitted": collected.missing, "Late": collected.late, "Replaced": collected.older}
+        collected_submissions = collect(folder, read_roster(roster), assignment, Path(scratch))
+        _print_others(collected_submissions.unmatched, verb)
+        names_by_label = {
+            "Not submitted": collected_submissions.missing,
+            "Late": collected_submissions.late,
+            "Replaced": collected_submissions.older,
+        }
         for label, names in names_by_label.items():
             if names:
                 echo(f"{label}: {', '.join(map(on_line, names))}")
         if out is not None:
-            report = {name: getattr(collected, name) for name in REPORT_FIELDS}
+            report = {name: getattr(collected_submissions, name) for name in REPORT_FIELDS}
             write_json(out / COLLECTION_REPORT, report)
-        yield collected.submissions, not collected.unmatched
+        yield collected_submissions.submissions, not collected_submissions.unmatched
 
 
 def _print_others(others: Sequence[tuple[str, str]], verb: str) -> None:

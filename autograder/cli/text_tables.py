@@ -18,9 +18,9 @@ def failure_summary(result: Result) -> str:
     if result.status is not Status.GRADED or result.build is None or not result.build.ok:
         return result.diagnosis.sentence
     costliest = costliest_failure(causes(result.checks, result.diagnosis.sentence))
-    failed = sum(check.outcome is Outcome.FAILED for check in result.checks)
-    more = f" (and {failed - 1} more)" if failed > 1 else ""
-    return f"{costliest.message or costliest.title}{more}" if costliest else ""
+    failure_count = sum(check.outcome is Outcome.FAILED for check in result.checks)
+    others = f" (and {failure_count - 1} more)" if failure_count > 1 else ""
+    return f"{costliest.message or costliest.title}{others}" if costliest else ""
 
 
 def table(rows: Sequence[Sequence[str]], headings: Sequence[str]) -> str:
@@ -35,10 +35,10 @@ def table(rows: Sequence[Sequence[str]], headings: Sequence[str]) -> str:
     last_width = max(40, shutil.get_terminal_size((120, 24)).columns - indent)
     lines = []
     for index, (name, *middle, text) in enumerate(cells):
-        wrapped = textwrap.wrap(text, last_width) or [""]
+        wrapped_lines = textwrap.wrap(text, last_width) or [""]
         right_aligned = [cell.rjust(width) for cell, width in zip(middle, widths[1:], strict=True)]
-        lines.append("  ".join([name.ljust(widths[0]), *right_aligned, wrapped[0]]).rstrip())
-        lines += [" " * indent + line for line in wrapped[1:]]
+        lines.append("  ".join([name.ljust(widths[0]), *right_aligned, wrapped_lines[0]]).rstrip())
+        lines += [" " * indent + line for line in wrapped_lines[1:]]
         if index == 0:
             lines.append("-" * (indent + min(last_width, 60)))
     return "\n".join(lines)
@@ -48,4 +48,5 @@ def score_text(result: Result) -> str:
     """Return the score of a result as text, or the reason why it has none."""
     if result.status is not Status.GRADED:
         return result.status.words
-    return f"{result.score:g}/{result.max_score:g} = {math.floor(result.percent)} %"  # never rounded up to 100 %
+    percent = math.floor(result.percent)  # rounded down, so that only full marks are 100 %
+    return f"{result.score:g}/{result.max_score:g} = {percent} %"

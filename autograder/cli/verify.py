@@ -98,26 +98,26 @@ def verify(
         raise click.UsageError("--record needs complete gradings: remove --quick")
     started_at = time.monotonic()
     chapters = assignments or tuple(suites.graded_assignments())
-    known = {*suites.graded_assignments()}.intersection(chapters)
-    if problems := [finding for name in sorted(known) for finding in read_checks(name).findings]:
+    known_assignments = {*suites.graded_assignments()}.intersection(chapters)
+    if problems := [finding for name in sorted(known_assignments) for finding in read_checks(name).findings]:
         for line in dict.fromkeys(map(str, problems)):
             echo(line, err=True)
         sys.exit(1)
     all_cases = [] if mutants_only else [case for name in chapters for case in cases(name, quick=quick)]
-    selected = [case for case in all_cases if not names or case.name in names]
-    generated = {} if quick or record else {name: generated_mutants(name) for name in chapters}
+    selected_cases = [case for case in all_cases if not names or case.name in names]
+    generated_by_chapter = {} if quick or record else {name: generated_mutants(name) for name in chapters}
     mutants = {
         chapter: [mutant for mutant in chapter_mutants.mutants if not names or mutant.id in names]
-        for chapter, chapter_mutants in generated.items()
+        for chapter, chapter_mutants in generated_by_chapter.items()
     }
-    if not selected and not any(mutants.values()):
+    if not selected_cases and not any(mutants.values()):
         raise click.UsageError(f"no submission is called {' or '.join(names)}")
-    with Progress(len(selected)) as progress, WorkerPool(Isolation(isolation), jobs) as workers:
+    with Progress(len(selected_cases)) as progress, WorkerPool(Isolation(isolation), jobs) as workers:
 
         def show(verdict: Verdict) -> None:
-            progress.show(verdict.result, _name(verdict), _marks(verdict))
+            progress.show(verdict.result, _case_name(verdict), _marks_text(verdict))
 
-        verdicts = verify_cases(selected, seed=seed, out=out, workers=workers, on_verdict=show)
+        verdicts = verify_cases(selected_cases, seed=seed, out=out, workers=workers, on_verdict=show)
         chapter_results = [
             _run_mutants(
                 ChapterMutationResult(name, chapter_mutants, reasons(name, chapter_mutants)),
@@ -127,14 +127,14 @@ def verify(
                 seed,
                 out,
             )
-            for name, chapter_mutants in generated.items()
+            for name, chapter_mutants in generated_by_chapter.items()
             if mutants[name]
         ]
     if record:
         for chapter in dict.fromkeys(verdict.assignment for verdict in verdicts):
             echo(record_failures(chapter, verdicts), err=True)
         verdicts = compare_again(verdicts)
-    rows = [(_name(verdict), _marks(verdict), verdict.mismatch or "as expected") for verdict in verdicts]
+    rows = [(_case_name(verdict), _marks_text(verdict), verdict.mismatch or "as expected") for verdict in verdicts]
     echo("\n" + table(rows, HEADINGS))
     mutant_costs = () if quick else costs.costs(verdicts)
     figures = summary(verdicts, time.monotonic() - started_at) | counts(chapters) | costs.counts(mutant_costs)
@@ -162,7 +162,7 @@ def _run_mutants(
     seed: int,
     out: Path,
 ) -> ChapterMutationResult:
-    """Grade the mutants of a chapter. Those that may survive are only graded if `are_named` is set."""
+    """Grade the mutants of a chapter. Those that may survive are graded only if the user has named them."""
 
     def show(result: MutantResult) -> None:
         if not result.killed:
@@ -170,24 +170,24 @@ def _run_mutants(
             echo(f"{chapter.assignment} mutant {result.id} {outcome}")
 
     cache = out / chapter.assignment / "mutants.jsonl"
-    skipped = {} if are_named else chapter.reasons
-    to_grade = [mutant for mutant in mutants if mutant.id not in skipped]
-    results = run_mutants(chapter.assignment, to_grade, workers, seed=seed, cache=cache, on_result=show)
-    survivors = tuple(MutantResult(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in skipped)
-    completed = replace(chapter, results=results + survivors)
-    killed = sum(result.killed for result in completed.results)
-    unexplained = len(completed.unexplained)
-    echo(f"{chapter.assignment}: {killed} of {len(mutants)} mutants killed, {unexplained} without a reason")
-    return completed
+    skipped_mutants = {} if are_named else chapter.reasons
+    graded_mutants = [mutant for mutant in mutants if mutant.id not in skipped_mutants]
+    results = run_mutants(chapter.assignment, graded_mutants, workers, seed=seed, cache=cache, on_result=show)
+    survivors = tuple(MutantResult(mutant.id, "", 0.0, "") for mutant in mutants if mutant.id in skipped_mutants)
+    completed_chapter = replace(chapter, results=results + survivors)
+    killed_count = sum(result.killed for result in completed_chapter.results)
+    unexplained_count = len(completed_chapter.unexplained)
+    echo(f"{chapter.assignment}: {killed_count} of {len(mutants)} mutants killed, {unexplained_count} without a reason")
+    return completed_chapter
 
 
-def _name(verdict: Verdict) -> str:
+def _case_name(verdict: Verdict) -> str:
     is_unique = verdict.kind in (CaseKind.REFERENCE, CaseKind.RELEASE)
     kind = "" if is_unique else f"{verdict.kind.value} "
     return f"{verdict.assignment} {kind}{verdict.name}"
 
 
-def _marks(verdict: Verdict) -> str:
+def _marks_text(verdict: Verdict) -> str:
     """Return the score of a submission, or how many checks it fails if only a part of them was run."""
     if not verdict.only or verdict.result.status is not Status.GRADED:
         return score_text(verdict.result)

@@ -1,4 +1,6 @@
-"""Installs what pip cannot with apt, if that needs no password: `python3 -I autograder/doctor/apt.py`.
+"""Installs packages that pip cannot install. It uses apt, unless sudo would ask for a password.
+
+Run as `python3 -I autograder/doctor/apt.py`.
 
 `autograder/bootstrap.py` runs this script in the system's Python, where only the standard library can be imported.
 """
@@ -14,7 +16,7 @@ import sysconfig
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-# The apt packages, each with the commands that show that it or an equivalent is installed.
+# The apt packages, and the commands of each. If one of the commands exists, the package counts as installed.
 TOOLS = {
     "g++": ("g++",),
     "bubblewrap": ("bwrap",),
@@ -30,19 +32,19 @@ def missing_packages(headers: Path, *, browser: bool) -> list[str]:
 
 
 def install(missing: Sequence[str], attempts_file: Path, uid: int, run: Callable[..., int]) -> None:
-    """Install packages, or print the command that does.
+    """Install packages, or print the command that installs them.
 
     Args:
         missing: the packages.
-        attempts_file: records the packages of each attempt, because an attempt takes seconds.
+        attempts_file: the file that records the packages of earlier attempts, which are not tried again.
         uid: the user's id; users other than root need sudo.
-        run: runs a command silently and returns its exit status.
+        run: a function that runs a command silently and returns its exit status.
     """
     manual_command = f"sudo apt-get install {' '.join(missing)}"
-    attempted = attempts_file.read_text().split() if attempts_file.exists() else []
+    attempted_packages = attempts_file.read_text().split() if attempts_file.exists() else []
     sudo = [] if uid == 0 else ["sudo", "-n"]  # `env` turns a missing sudo into an exit status
     can_install = shutil.which("apt-get") and run("env", *sudo, "true") == 0
-    if not can_install or set(missing) <= set(attempted):
+    if not can_install or set(missing) <= set(attempted_packages):
         print(f"set-up: {', '.join(missing)} is missing; to install it: {manual_command}", flush=True)
         return
     print(f"set-up: installing {', '.join(missing)} with apt-get", flush=True)
@@ -50,13 +52,13 @@ def install(missing: Sequence[str], attempts_file: Path, uid: int, run: Callable
     run(*apt, "update")
     status = run(*apt, "install", "-y", "--no-install-recommends", *missing)
     attempts_file.parent.mkdir(exist_ok=True)
-    attempts_file.write_text(" ".join({*attempted, *missing}))
+    attempts_file.write_text(" ".join({*attempted_packages, *missing}))
     if status != 0:
         print(f"set-up: apt-get failed; set-up continues; to install them yourself: {manual_command}", flush=True)
 
 
 def require_compiler(missing: Sequence[str]) -> None:
-    """Exit with a message if a package that is needed to compile messages is missing."""
+    """If a package that is needed to compile messages is missing, exit with a message."""
     if needed_packages := [package for package in missing if package == "g++" or package.endswith("-dev")]:
         missing_files = " and ".join("g++" if package == "g++" else "Python.h" for package in needed_packages)
         sys.exit(
@@ -66,7 +68,7 @@ def require_compiler(missing: Sequence[str]) -> None:
 
 
 def main() -> None:
-    """Install what is missing."""
+    """Install the missing packages."""
     parser = argparse.ArgumentParser(description="Install what pip cannot with apt, if that needs no password.")
     parser.add_argument("--browser", action="store_true", help="also install Chromium if there is no browser")
     parser.add_argument("--require-compiler", action="store_true", help="fail if messages cannot be compiled")

@@ -13,11 +13,11 @@ from autograder.run.fork_server import seccomp
 from autograder.run.sandbox import ExitReason, Limits
 from autograder.run.sandbox.limits import GIB, MIB
 
-CANARY = "CANARY-of-the-grader"  # in the environment and the memory of the process that tries the escapes
+CANARY = "CANARY-of-the-grader"  # a secret in the environment and the memory of the process that tries the escapes
 LIMITS = Limits(wall_seconds=20.0, threads=40, memory=200 * MIB, output=50_000, scratch=4 * MIB)
-_LONG = replace(LIMITS, wall_seconds=120.0)
-_SHORT, _HUGE = replace(LIMITS, wall_seconds=1.0), replace(LIMITS, memory=4 * GIB)
-_MORE_MEMORY = replace(LIMITS, memory=600 * MIB)  # more than its processes map
+_LONG_LIMITS = replace(LIMITS, wall_seconds=120.0)
+_SHORT_LIMITS, _HUGE_LIMITS = replace(LIMITS, wall_seconds=1.0), replace(LIMITS, memory=4 * GIB)
+_SOCKETS_LIMITS = replace(LIMITS, memory=600 * MIB)  # more memory than the processes of `_SOCKETS` map
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Escape:
 
     @property
     def program(self) -> str:
-        """The code, preceded by HIDDEN: the folders of the course that no program may read."""
+        """The code, after a definition of HIDDEN: the folders of the course that no program may read."""
         return f"HIDDEN = {[*map(str, (*course_paths.check_folders(), course_paths.SOLUTIONS))]}\n{self.code}"
 
 
@@ -265,7 +265,7 @@ ESCAPES = (
     Escape("network", "reach a network or the machine's own ports", _NETWORK),
     Escape("loopback", "reach anything but the grader if it has a network", _NETWORK, network=True),
     Escape("writing", "write to the system, the kernel's settings or the grader", _WRITE),
-    Escape("settings", "open a file outside of its folders for writing", _SETTINGS, _LONG),
+    Escape("settings", "open a file outside of its folders for writing", _SETTINGS, _LONG_LIMITS),
     Escape("inotify", "exhaust the inotify instances of the machine's user", _INOTIFY),
     Escape("descriptors", "exhaust the number of descriptors in flight", _IN_FLIGHT),
     Escape("calls", "create namespaces or mounts, use keys, trace, or load programs into the kernel", _CALLS),
@@ -274,17 +274,17 @@ ESCAPES = (
     Escape("memory eater", "use memory without end", _USE_MEMORY, exit_reasons=(ExitReason.MEMORY,)),
     Escape("unmapped memory", "hold memory that belongs to no process", _UNMAPPED),
     Escape(
-        "socket buffers", "hold memory in socket buffers", _SOCKETS, _MORE_MEMORY, exit_reasons=(ExitReason.MEMORY,)
+        "socket buffers", "hold memory in socket buffers", _SOCKETS, _SOCKETS_LIMITS, exit_reasons=(ExitReason.MEMORY,)
     ),
-    Escape("fork bomb", "start processes without end", _FORKS, _HUGE, exit_reasons=(ExitReason.THREADS,)),
+    Escape("fork bomb", "start processes without end", _FORKS, _HUGE_LIMITS, exit_reasons=(ExitReason.THREADS,)),
     Escape("thread bomb", "start threads without end", _THREADS, exit_reasons=(ExitReason.THREADS,)),
     Escape("output", "print without end", "while True: print('x' * 99)", exit_reasons=(ExitReason.OUTPUT,)),
-    Escape("endless loop", "run without end", "while True: pass", _SHORT, exit_reasons=(ExitReason.WALL_TIME,)),
+    Escape("endless loop", "run without end", "while True: pass", _SHORT_LIMITS, exit_reasons=(ExitReason.WALL_TIME,)),
     Escape(
         "ignored signals",
         "survive by ignoring every signal",
         _IGNORE_SIGNALS,
-        _SHORT,
+        _SHORT_LIMITS,
         exit_reasons=(ExitReason.WALL_TIME,),
     ),
     Escape("daemon", "survive by setsid and two forks", _DAEMON),

@@ -42,7 +42,7 @@ def render(findings: Sequence[Finding], *, width: int = 100, verdicts: tuple[str
         indent = " " * len(head)
         lines += textwrap.wrap(finding.state, width, initial_indent=head, subsequent_indent=indent)
         if finding.fix:
-            # Not wrapped, so that it can be copied.
+            # A command is not wrapped, so that it can be copied.
             lines.append(f"{indent}fix: {finding.fix}")
     count = {status: sum(finding.status is status for finding in findings) for status in Status}
     verdict = verdicts[0] if healthy(findings) else verdicts[1]

@@ -66,8 +66,8 @@ def environment(system: System) -> Finding:
 
 def other_users(system: System) -> tuple[Finding, ...]:
     """Check that other users of this machine, such as a class, can run what root has set up."""
-    closed = system.closed_to_other_users()
-    return (Finding("other users", Status.WEAK, closed, "make setup PYTHON=/usr/bin/python3"),) if closed else ()
+    reason = system.closed_to_other_users()
+    return (Finding("other users", Status.WEAK, reason, "make setup PYTHON=/usr/bin/python3"),) if reason else ()
 
 
 def compiler(system: System) -> Finding:
@@ -92,7 +92,7 @@ def build_tools(system: System) -> Finding:
 
 
 def versions(system: System) -> Finding:
-    """Check that the packages used by students' programs, builds and tests have the versions of ROS's platform."""
+    """Check that the packages that students use have the same versions as on ROS's platform."""
     platform, packages = DISTRIBUTION.platform, DISTRIBUTION.packages
     differences = DISTRIBUTION.differences({p.name: system.package(p.name) for p in packages})
     if not differences:
@@ -153,18 +153,20 @@ def _reason_and_fix(system: System) -> tuple[str, str]:
 
 def release(system: System) -> tuple[Finding, ...]:
     """Check whether a newer student release is available. The course itself is not a release."""
-    installed = json.loads(system.read(course_paths.ROOT / MANIFEST) or "{}")
-    newest = json.loads((system.read(Path(installed["course"], MANIFEST)) if installed.get("course") else None) or "{}")
-    if not installed:
+    installed_release = json.loads(system.read(course_paths.ROOT / MANIFEST) or "{}")
+    newest_release = json.loads(
+        (system.read(Path(installed_release["course"], MANIFEST)) if installed_release.get("course") else None) or "{}"
+    )
+    if not installed_release:
         return ()
-    if newest and newest["version"] > installed["version"]:
-        state = f"version {installed['version']}; a newer one is available, {newest['version']}"
+    if newest_release and newest_release["version"] > installed_release["version"]:
+        state = f"version {installed_release['version']}; a newer one is available, {newest_release['version']}"
         return (Finding("release", Status.WEAK, state, "autograder update"),)
-    return (Finding("release", Status.OK, f"version {installed['version']}"),)
+    return (Finding("release", Status.OK, f"version {installed_release['version']}"),)
 
 
 def space(system: System) -> Finding:
-    """Check that there is disk space for workspaces and builds."""
+    """Check that there is enough disk space for workspaces and builds."""
     if not system.writable(system.tmp):
         state = f"{system.tmp} is not writable, but workspaces and builds go there"
         return Finding("disk", Status.MISSING, state, 'export TMPDIR="$HOME/tmp" && mkdir -p "$TMPDIR"')
@@ -177,7 +179,7 @@ def space(system: System) -> Finding:
 
 
 def browser(system: System) -> Finding:
-    """Check for a browser for the browser tests. Nothing else needs one."""
+    """Check for a browser, which only the browser tests need."""
     for command in TOOLS["chromium"]:
         if system.which(command) is not None:
             result = system.run([command, "--version"], {})

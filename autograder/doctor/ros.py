@@ -1,4 +1,4 @@
-"""Findings about ROS 2: the installation, its completeness, and variables that silently break it."""
+"""Findings about ROS 2: whether it is installed and complete, and which variables silently break it."""
 
 from __future__ import annotations
 
@@ -93,13 +93,13 @@ def cmake_files(system: System, ros: RosEnvironment) -> Finding:
 
 def log_folder(system: System, ros: RosEnvironment | None) -> Finding:
     """Check that the log folder is writable. Otherwise `rclpy.init` raises an exception."""
-    configured = system.environ.get("ROS_LOG_DIR")
-    folder = Path(configured or (ros.variables()["ROS_LOG_DIR"] if ros else system.tmp))
+    configured_folder = system.environ.get("ROS_LOG_DIR")
+    folder = Path(configured_folder or (ros.variables()["ROS_LOG_DIR"] if ros else system.tmp))
     if system.writable(folder):
         return Finding("ROS logs", Status.OK, f"written to {folder}")
     state = f"the folder for ROS logs, {folder}, is not writable"
     return Finding(
-        "ROS logs", Status.MISSING, state, "unset ROS_LOG_DIR" if configured else "export ROS_LOG_DIR=~/.ros/log"
+        "ROS logs", Status.MISSING, state, "unset ROS_LOG_DIR" if configured_folder else "export ROS_LOG_DIR=~/.ros/log"
     )
 
 
@@ -118,19 +118,24 @@ def start(system: System, ros: RosEnvironment) -> Finding:
 def variables(system: System) -> Finding:
     """Check for environment variables, perhaps from another project's shell, that affect discovery."""
     environ = system.environ
-    stray = {
+    stray_variables = {
         name: effect
         for name, effect in _STRAY.items()
         if environ.get(name) and environ[name] not in _HARMLESS.get(name, ())
     }
     middleware = environ.get("RMW_IMPLEMENTATION", "")
     if middleware not in ("", "rmw_fastrtps_cpp"):
-        stray["RMW_IMPLEMENTATION"] = f"selects {middleware}, but the course needs rmw_fastrtps_cpp"
+        stray_variables["RMW_IMPLEMENTATION"] = f"selects {middleware}, but the course needs rmw_fastrtps_cpp"
     domain = environ.get("ROS_DOMAIN_ID", "")
     if domain and not (domain.isdecimal() and int(domain) <= 232):
-        stray["ROS_DOMAIN_ID"] = f"is {domain}, but must be 0 to 232"
-    if not stray:
+        stray_variables["ROS_DOMAIN_ID"] = f"is {domain}, but must be 0 to 232"
+    if not stray_variables:
         return Finding("ROS variables", Status.OK, "none that affects discovery")
-    blocking = {"RMW_IMPLEMENTATION", "ROS_DOMAIN_ID"} & set(stray)
-    state = "; ".join(f"{name} {effect}" for name, effect in stray.items())
-    return Finding("ROS variables", Status.MISSING if blocking else Status.WEAK, state, f"unset {' '.join(stray)}")
+    blocking_variables = {"RMW_IMPLEMENTATION", "ROS_DOMAIN_ID"} & set(stray_variables)
+    state = "; ".join(f"{name} {effect}" for name, effect in stray_variables.items())
+    return Finding(
+        "ROS variables",
+        Status.MISSING if blocking_variables else Status.WEAK,
+        state,
+        f"unset {' '.join(stray_variables)}",
+    )

@@ -19,7 +19,7 @@ from autograder.run.sandbox.launcher import launch, warm_up
 from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
 VERDICTS = ("Every escape was blocked.", "An escape succeeded: docs/security.md explains the limits.")
-_PROFILE = "lockstep"  # the import profile of nodes
+_PROFILE = "lockstep"  # the import profile of the fork server that also forks students' nodes
 
 
 def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
@@ -29,19 +29,19 @@ def attempt(escape: Escape, home: Path, port: int, profile: str | None) -> str:
         escape: the escape to try.
         home: an empty folder that the program can write to.
         port: an open port of the machine outside the worker sandbox.
-        profile: the import profile of the fork server to fork the program from; None starts a new interpreter.
+        profile: the import profile of the fork server that forks the program; None to start a new interpreter.
     """
     program = home / "program.py"
     program.write_text(f"PORT, OUTSIDE = {port}, {os.getpid()}\n{escape.program}")
     spec = Sandbox(home, mounts=(Mount(home, writable=True),), network=escape.network, limits=escape.limits)
-    earlier = processes()
+    earlier_processes = processes()
     with launch([sys.executable, str(program)], spec, profile=profile) as process:
         process.wait(escape.limits.wall_seconds + 60)
     problems = [line for line in process.output.splitlines() if line.startswith("OUT")]
     if process.exit_reason not in escape.exit_reasons:
         problems.append(f"it ended as {process.exit_reason and process.exit_reason.value}: {process.output[-200:]}")
     deadline = time.monotonic() + 20
-    while (survivors := processes() - earlier) and time.monotonic() < deadline:
+    while (survivors := processes() - earlier_processes) and time.monotonic() < deadline:
         time.sleep(0.05)
     return "; ".join([*problems, *(f"process {pid} survived" for pid in survivors)])
 
@@ -58,30 +58,32 @@ def processes() -> set[int]:
 
 
 def examine() -> tuple[Finding, ...]:
-    """Try every escape on this machine, both started and forked in a sandbox, and return the findings."""
+    """Try every escape on this machine, in a new interpreter and in a forked one, and return the findings."""
     failure = namespaces_failure()
     if failure is not None:
         state = f"not tried: {failure}; without namespaces, a student's code has the rights of the grader's user"
         return (Finding("isolation", Status.MISSING, state, "autograder doctor"),)
-    reached: dict[str, str] = {}
+    reached_by_escape: dict[str, str] = {}
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = str(server.getsockname()[1])
         command = [sys.executable, "-m", "autograder.doctor.security", port]
         report = run_in_worker_sandbox(lambda scratch: [*command, str(scratch)], Isolation.BUBBLEWRAP)
     for line in report.output.splitlines():
         with suppress(ValueError):
-            reached |= json.loads(line)
-    return tuple(_finding(escape, reached.get(escape.id, f"not tried: {report.output[-300:]}")) for escape in ESCAPES)
+            reached_by_escape |= json.loads(line)
+    return tuple(
+        _finding(escape, reached_by_escape.get(escape.id, f"not tried: {report.output[-300:]}")) for escape in ESCAPES
+    )
 
 
-def _finding(escape: Escape, reached: str) -> Finding:
-    if reached:
-        return Finding(escape.id, Status.MISSING, f"not blocked, a program can {escape.description}: {reached}")
+def _finding(escape: Escape, problems: str) -> Finding:
+    if problems:
+        return Finding(escape.id, Status.MISSING, f"not blocked, a program can {escape.description}: {problems}")
     return Finding(escape.id, Status.OK, f"blocked: a program cannot {escape.description}")
 
 
 def main() -> None:
-    """Try every escape in this process's worker sandbox, and print a JSON object for each."""
+    """Try every escape in this process's worker sandbox, and print a JSON object about each."""
     activate()
     os.environ["CANARY"] = CANARY
     port, scratch = int(sys.argv[1]), Path(sys.argv[2])

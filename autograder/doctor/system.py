@@ -18,23 +18,23 @@ from autograder import course_paths
 from autograder.bootstrap import closed_to_other_users
 from autograder.ros import find
 from autograder.ros.launch_packages import describe_launch
-from autograder.ros.patch_wheels import baked_files
+from autograder.ros.patch_wheels import unpatched_cmake_files
 from autograder.run.sandbox import cgroup
 from autograder.run.sandbox.isolation import namespaces_failure
 
-COMMAND_TIMEOUT_SECONDS = 60.0
+COMMAND_TIMEOUT_SECONDS = 60.0  # a command that runs for longer counts as failed
 
 
 @dataclass(frozen=True)
 class CommandResult:
-    """A command's exit status and output, with both streams combined."""
+    """The exit status of a command, and its output on stdout and stderr."""
 
     status: int
     output: str
 
     @property
     def last_line(self) -> str:
-        """The last line of the output that is not empty, such as the error of a traceback."""
+        """The last line of the output that is not empty, such as the error message below a traceback."""
         lines = [line.strip() for line in self.output.splitlines() if line.strip()]
         return lines[-1] if lines else f"exit status {self.status}"
 
@@ -49,17 +49,17 @@ class System:
         self.in_venv = sys.prefix != sys.base_prefix
         self.headers = Path(sysconfig.get_path("include"))
         self.environ: Mapping[str, str] = os.environ
-        # Not gettempdir(), which skips a TMPDIR that is not writable and would hide the problem.
+        # `gettempdir()` alone would skip a TMPDIR that is not writable, and so hide the problem.
         self.tmp = Path(os.environ.get("TMPDIR") or tempfile.gettempdir())
         self.disk_usage = shutil.disk_usage
         self.find_ros = find
         self.describe_launch = describe_launch
-        self.unpatched_cmake_files = baked_files
+        self.unpatched_cmake_files = unpatched_cmake_files
         self.namespaces_failure = namespaces_failure
         self.bounds = cgroup.bounds
 
     def which(self, command: str) -> str | None:
-        """Find a command on PATH or in the running environment, even if that is not activated."""
+        """Find a command on PATH or in the running virtual environment, even if the latter is not activated."""
         bin_folder = str(Path(sys.prefix) / "bin")
         return shutil.which(command, path=os.pathsep.join([bin_folder, os.environ.get("PATH", os.defpath)]))
 
@@ -101,11 +101,11 @@ class System:
             return False
 
     def closed_to_other_users(self) -> str | None:
-        """Explain why other users cannot run root's set-up, or return None if they can or this user is not root."""
+        """Explain why other users cannot run root's set-up. Return None if they can, or if this user is not root."""
         return closed_to_other_users(Path(sys.executable).resolve(), course_paths.ROOT) if os.geteuid() == 0 else None
 
     def package(self, name: str) -> str | None:
-        """Return an installed distribution's version, or None."""
+        """Return the version of a Python package, or None if it is not installed."""
         try:
             return importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:

@@ -2,8 +2,8 @@
 
     submission -> intake -> notebook (restored, then executed) -> build -> checks -> result
 
-`grade_submission` starts a worker (`worker.py`) for one submission in its own sandbox. The worker goes through the
-phases and runs students' code only in sandboxes. The many submissions of the verification share a few workers.
+`grade_submission` starts a worker (`worker.py`) for each submission in a separate sandbox. The worker executes the
+phases, and runs students' code only in sandboxes. The many submissions of the verification share a few workers.
 """
 
 from autograder.grade.pipeline import DEFAULT_SEED, grade_submission

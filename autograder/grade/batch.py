@@ -1,4 +1,4 @@
-"""Grading a class: many submissions at once, each in its own worker sandbox, results written one by one."""
+"""Grades a class: several submissions at once, each in its own worker sandbox. Results are written one by one."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from autograder.grade.job import Job
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG, NOTEBOOK, RESULT, remove_unfinished, write_result
-from autograder.result.class_folder import why_not_a_folder
+from autograder.result.class_folder import folder_name_problem
 from autograder.result.model import Result, Status, from_json
 from autograder.run.sandbox import Isolation
 from autograder.submission.intake.exercises import exercises_of
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook, stem
 
-TIMESTAMP = "timestamp.txt"  # a file of nbgrader beside the submission
+TIMESTAMP = "timestamp.txt"  # nbgrader writes this file beside a submission
 NO_SUBMISSION = "it is not a folder, an archive or a notebook"
 
 OnResult = Callable[[Result], None]
@@ -28,28 +28,29 @@ OnResult = Callable[[Result], None]
 
 @dataclass(frozen=True)
 class Discovered:
-    """Submissions by student, and the other files beside them, as pairs of a name and the reason."""
+    """Submissions by student, and the other files beside them, each with the reason why it is not a submission."""
 
     submissions: Mapping[str, Path]
     others: tuple[tuple[str, str], ...]
 
 
-GradeEach = Callable[[Sequence[Job], OnResult], None]
-"""Grades submissions, and hands over each result as it comes."""
+GradeJobs = Callable[[Sequence[Job], OnResult], None]
+"""Grades submissions, and calls a function with each result as soon as it is available."""
 
 
-def grade_here(todo: Sequence[Job], on_result: OnResult, *, jobs: int) -> None:
+def grade_locally(submissions: Sequence[Job], on_result: OnResult, *, jobs: int) -> None:
     """Grade on this machine, `jobs` submissions at once."""
-    map_parallel(grade_submission, todo, jobs=jobs, on_done=on_result)
+    map_parallel(grade_submission, submissions, jobs=jobs, on_done=on_result)
 
 
 def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
-    """Find the submissions at `paths`: each is one, or a folder of them.
+    """Find the submissions at `paths`. Each path is a submission or a folder of submissions.
 
-    A folder of submissions has one file or folder for each student, or nbgrader's `submitted/STUDENT/ASSIGNMENT`.
+    A folder of submissions contains one file or folder for each student, or is nbgrader's `submitted` folder, which
+    contains `STUDENT/ASSIGNMENT`.
 
     Raises:
-        UsageError: a path does not exist, a folder holds nothing, or two submissions have the same student's name.
+        UsageError: a path does not exist, a folder contains no submission, or two submissions have the same name.
     """
     submissions: list[tuple[str, Path]] = []
     others: list[tuple[str, str]] = []
@@ -61,23 +62,23 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
         elif _is_submission(path, assignment):
             submissions.append((path.resolve().name, path))
         else:
-            inside, beside = _of_folder(path, assignment)
-            submissions += inside
-            others += beside
-    refused = {student: why for student, _ in submissions if (why := why_not_a_folder(student))}
-    others += [(path.name, refused[student]) for student, path in submissions if student in refused]
-    submissions = [(student, path) for student, path in submissions if student not in refused]
+            folder_submissions, folder_others = _discover_in_folder(path, assignment)
+            submissions += folder_submissions
+            others += folder_others
+    problems = {student: problem for student, _ in submissions if (problem := folder_name_problem(student))}
+    others += [(path.name, problems[student]) for student, path in submissions if student in problems]
+    submissions = [(student, path) for student, path in submissions if student not in problems]
     names = [student for student, _ in submissions]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
+    duplicates = sorted({name for name in names if names.count(name) > 1})
+    if duplicates:
         raise UsageError(
-            f"two submissions are called {', '.join(twice)}: rename one, results would overwrite each other"
+            f"two submissions are called {', '.join(duplicates)}: rename one, results would overwrite each other"
         )
     return Discovered(dict(submissions), tuple(others))
 
 
 def student_of(path: Path) -> str:
-    """Return the name that a submitted file or folder gives its student: `ada` for `ada.tar.gz`."""
+    """Return the student's name, after which a submitted file or folder is named: `ada` for `ada.tar.gz`."""
     if path.is_dir():
         return path.name
     return stem(path.name) if stem(path.name) != path.name else path.stem
@@ -88,8 +89,8 @@ def submission_in(folder: Path, assignment: str) -> Path:
     inner = folder / assignment
     if not inner.is_dir():
         return folder
-    beside = (child for child in folder.iterdir() if not is_ignored(child.name))
-    return inner if all(child.is_dir() or child.name == TIMESTAMP for child in beside) else folder
+    children = (child for child in folder.iterdir() if not is_ignored(child.name))
+    return inner if all(child.is_dir() or child.name == TIMESTAMP for child in children) else folder
 
 
 def grade_all(
@@ -102,22 +103,22 @@ def grade_all(
     isolation: Isolation = Isolation.BUBBLEWRAP,
     resume: bool = False,
     on_result: OnResult = lambda result: None,
-    grade_each: GradeEach | None = None,
+    grade_jobs: GradeJobs | None = None,
 ) -> tuple[Result, ...]:
-    """Grade submissions, `jobs` at once; `out`/STUDENT gets each one's result and pictures.
+    """Grade submissions, `jobs` at once, and write the result and pictures of each to `out`/STUDENT.
 
-    Of equal submissions one is graded, and the others take over its result.
+    Of equal submissions, only one is graded, and its result is copied for the others.
 
     Args:
-        submissions: by their students, from `discover`.
-        assignment: which assignment they answer.
-        seed: every hidden input is drawn from it, the same for all.
+        submissions: the submissions by student, from `discover`.
+        assignment: the assignment of all submissions.
+        seed: the number from which every hidden input is drawn, the same for all submissions.
         out: the folder of the results.
-        jobs: how many are graded at once; the results do not depend on it.
-        isolation: The isolation level.
-        resume: keep a stored result whose submission, suite, seed and isolation are the same.
-        on_result: called for each result as it comes, in any order.
-        grade_each: grades them in place of `jobs` workers of this machine.
+        jobs: how many submissions are graded at once. The results do not depend on it.
+        isolation: the isolation level.
+        resume: whether to reuse a stored result with the same submission, suite, seed and isolation level.
+        on_result: is called with each result as soon as it is available, in any order.
+        grade_jobs: grades the submissions, by default with `jobs` workers on this machine.
 
     Returns:
         The results, in the order of `submissions`. After Ctrl-C, running gradings finish, and `resume` continues later.
@@ -126,50 +127,51 @@ def grade_all(
     for student, path in submissions.items():
         job = Job(path, assignment, student, seed, out / student, isolation)
         remove_unfinished(job.out)
-        digests = job.digests if len(submissions) > 1 else None  # one alone is read by its worker, and nowhere else
+        digests = job.digests if len(submissions) > 1 else None  # a single submission is compared with no other
         equal.setdefault(digests.graded_sha256 if digests else f"of {student}", []).append(job)
     groups = {group[0].student: group for group in equal.values()}
     results: dict[str, Result] = {}
 
-    def kept(job: Job) -> Result | None:
-        return stored(job) if resume else None
+    def reusable_result(job: Job) -> Result | None:
+        return stored_result(job) if resume else None
 
-    def take(result: Result) -> None:
-        graded, *others = groups[result.student]
-        for each in (result, *(kept(job) or _copy(result, graded, job) for job in others)):
-            results[each.student] = each
-            on_result(each)
+    def add_result(result: Result) -> None:
+        graded_job, *others = groups[result.student]
+        copies = (reusable_result(job) or _copy(result, graded_job, job) for job in others)
+        for student_result in (result, *copies):
+            results[student_result.student] = student_result
+            on_result(student_result)
 
-    left = []
+    remaining = []
     for job, *_ in groups.values():
-        if (result := kept(job)) is not None:
-            take(result)
+        if (result := reusable_result(job)) is not None:
+            add_result(result)
         else:
-            left.append(job)
-    (grade_each or partial(grade_here, jobs=jobs))(left, take)
+            remaining.append(job)
+    (grade_jobs or partial(grade_locally, jobs=jobs))(remaining, add_result)
     return tuple(results[student] for student in submissions)
 
 
-def stored(job: Job) -> Result | None:
-    """Return a job's stored result if it may be kept: its submission, suite, seed and isolation are the same."""
+def stored_result(job: Job) -> Result | None:
+    """Return a job's stored result if it can be reused: its submission, suite, seed and isolation are the same."""
     try:
         result = from_json(json.loads((job.out / RESULT).read_text()), source=str(job.out / RESULT))
     except (OSError, ValueError, AutograderError):
         return None
     digest = job.digests and job.digests.sha256
     actual = (result.student, result.submission_sha256, result.suite_version, result.seed, result.isolation)
-    same = actual == (job.student, digest, job.suite.version, job.seed, job.isolation.value)
-    return result if same and result.status is Status.GRADED else None
+    is_same = actual == (job.student, digest, job.suite.version, job.seed, job.isolation.value)
+    return result if is_same and result.status is Status.GRADED else None
 
 
-def _copy(result: Result, graded: Job, job: Job) -> Result:
-    """Store the result of a graded submission as that of an equal one."""
-    if (digests := job.digests) is not None:  # the same answer; the files around it may differ
+def _copy(result: Result, graded_job: Job, job: Job) -> Result:
+    """Store the result of `graded_job` as the result of `job`, whose submission is equal."""
+    if (digests := job.digests) is not None:  # the files that are graded are the same, but others may differ
         digest = digests.sha256 if result.status is Status.GRADED else result.submission_sha256
         notices = result.notices if digests.notices is None else digests.notices
         result = replace(result, submission_sha256=digest, notices=notices, unused=digests.unused)
-    shown = {name for artifact in result.artifacts for name in (artifact.name, artifact.run) if name}
-    files = ((name, graded.out / name) for name in (NOTEBOOK, LOG, *shown))
+    artifacts = {name for artifact in result.artifacts for name in (artifact.name, artifact.run) if name}
+    files = ((name, graded_job.out / name) for name in (NOTEBOOK, LOG, *artifacts))
     return write_result(job, result, {name: path.read_bytes() for name, path in files if path.is_file()})
 
 
@@ -177,11 +179,11 @@ def _is_submission(folder: Path, assignment: str) -> bool:
     if any((folder / name).exists() for name in (f"{assignment}.ipynb", "ws", "src")):
         return True
     exercises = exercises_of(assignment)
-    own = {path.parts[0] for path in exercises.beside if len(path.parts) > 1} if exercises is not None else ()
-    return any((folder / name).is_dir() for name in own)  # figures, which each release of the chapter has
+    names = {path.parts[0] for path in exercises.other_files if len(path.parts) > 1} if exercises is not None else ()
+    return any((folder / name).is_dir() for name in names)  # such as `figures`, which every release contains
 
 
-def _of_folder(folder: Path, assignment: str) -> tuple[list[tuple[str, Path]], list[tuple[str, str]]]:
+def _discover_in_folder(folder: Path, assignment: str) -> tuple[list[tuple[str, Path]], list[tuple[str, str]]]:
     children = sorted(child for child in folder.iterdir() if not (child.name.startswith(".") or is_ignored(child.name)))
     students = [child for child in children if child.is_dir() or is_archive(child.name) or is_notebook(child.name)]
     if not students:

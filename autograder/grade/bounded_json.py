@@ -1,4 +1,4 @@
-"""Reads JSON that a worker left: its values are counted first."""
+"""Reads JSON from a worker. The values in it are counted before it is parsed."""
 
 from __future__ import annotations
 
@@ -6,29 +6,30 @@ import json
 import math
 from typing import Any
 
-from autograder.submission.json_size import holds_more
+from autograder.submission.json_size import exceeds
 
-RESULT_VALUES = 100_000  # of a result; those of the course have 4,000
-RUN_VALUES = 100_000  # of a run for the player, whose columns are packed
-NOTEBOOK_VALUES = 500_000  # of an executed notebook; `run_notebook.MAX_VALUES` bounds those of its outputs
-_MAX_DIGITS = 100  # of an int: a longer one can be neither compared with a float nor shown
+RESULT_VALUES = 100_000  # limit for a result; the results of this course have about 4,000 values
+RUN_VALUES = 100_000  # limit for a run that the player shows; each of its columns is packed into one value
+NOTEBOOK_VALUES = 500_000  # limit for an executed notebook; for its outputs, the limit is `run_notebook.MAX_VALUES`
+_MAX_DIGITS = 100  # digits of an int; with more, it may be impossible to print or to compare with a float
 
 
-def read_json(data: bytes, most: int, *, is_strict: bool = True) -> Any:
+def read_json(data: bytes, limit: int, *, is_strict: bool = True) -> Any:
     """Parse JSON in UTF-8.
 
     Args:
         data: the JSON.
-        most: maximum of commas and brackets outside strings; there are at most one fewer of these than values.
+        limit: the maximum number of commas and brackets outside strings. The number of values is at most one more.
         is_strict: whether NaN, infinity and numbers with too many digits are errors.
 
     Raises:
-        ValueError: it is not JSON, or exceeds a bound.
-        RecursionError: it is nested too deep.
+        ValueError: `data` is not JSON, or exceeds a limit.
+        RecursionError: `data` is nested too deeply.
     """
     text = data.decode()
-    if holds_more(data, most, 4 * most + 4):  # of quotation marks, keys and values have as many if all are strings
-        raise ValueError(f"it holds more than {most:,} values")
+    # If all keys and values are strings, the text has up to 4 * limit + 4 quotation marks.
+    if exceeds(data, limit, 4 * limit + 4):
+        raise ValueError(f"it holds more than {limit:,} values")
     if not is_strict:
         return json.loads(text)
     return json.loads(text, parse_int=_int, parse_float=_float, parse_constant=_float)

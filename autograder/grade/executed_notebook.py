@@ -1,4 +1,4 @@
-"""The notebook that a worker leaves beside a result: written within bounds, and read as a stranger's."""
+"""Writes and reads the executed notebook beside a result. Its size is limited, and its content is untrusted."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ MAX_BYTES = 48 * 1024 * 1024
 
 
 def encode(notebook: NotebookNode) -> bytes:
-    """Return an executed notebook as a file, without its outputs if these would make it too large.
+    """Return the bytes of an executed notebook, without outputs if they make it too large.
 
-    A text is one string: its lines in a list, as nbformat writes them, could be millions of values.
+    Each text is one string, because a list of its lines, as nbformat writes it, could have millions of values.
     """
-    data = _encoded(notebook)
+    data = _to_json(notebook)
     if len(data) <= MAX_BYTES:
         return data
     cells = [{**cell, "outputs": []} if cell.cell_type == "code" else cell for cell in notebook.cells]
-    return _encoded({**notebook, "cells": cells})
+    return _to_json({**notebook, "cells": cells})
 
 
 def decode(data: bytes) -> list[NotebookNode]:
     """Return the code cells of an executed notebook, each with a text and with outputs that are objects.
 
-    More is not looked at: to validate the notebook's format can take a minute.
+    Nothing else is checked, because a validation of the notebook's format can take a minute.
 
     Raises:
-        ValueError: it is not a notebook, or exceeds a bound.
-        RecursionError: it is nested too deep.
+        ValueError: `data` is not a notebook, or exceeds a limit.
+        RecursionError: `data` is nested too deeply.
     """
     notebook = read_json(data, NOTEBOOK_VALUES, is_strict=False)
     cells = notebook.get("cells") if isinstance(notebook, dict) else None
@@ -40,14 +40,14 @@ def decode(data: bytes) -> list[NotebookNode]:
     return [_code_cell(cell) for cell in cells if cell.get("cell_type") == "code"]
 
 
-def _encoded(notebook: Any) -> bytes:
-    # Half a surrogate pair, in a cell or its output, is not UTF-8.
+def _to_json(notebook: Any) -> bytes:
+    # A lone surrogate in a cell or its output cannot be encoded as UTF-8.
     return json.dumps(notebook, ensure_ascii=False, sort_keys=True).encode("utf-8", errors="replace")
 
 
 def _code_cell(cell: dict[str, Any]) -> NotebookNode:
     source, outputs, metadata = cell.get("source"), cell.get("outputs"), cell.get("metadata", {})
-    if isinstance(source, list) and all(isinstance(line, str) for line in source):  # of an earlier version
+    if isinstance(source, list) and all(isinstance(line, str) for line in source):  # written by an earlier version
         source = "".join(source)
     if not isinstance(source, str) or not isinstance(outputs, list) or not isinstance(metadata, dict):
         raise ValueError("it has a cell without a text or outputs")

@@ -1,4 +1,4 @@
-"""A readers-writer lock: many gradings share the machine, or one has it to itself."""
+"""A readers-writer lock: many gradings share the machine, or a single one uses it alone."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from contextlib import contextmanager
 
 
 class MachineLock:
-    """A caller of `exclusive` waits until all others are done; callers that come after it wait for it."""
+    """A caller of `exclusive` waits until all earlier callers are done, and later callers wait until it is done."""
 
     def __init__(self) -> None:
-        self._turn = threading.Lock()  # orders the waiting threads: one that waits for the whole machine holds it
+        self._turn = threading.Lock()  # held by a thread that waits for exclusive use, so that later threads wait
         self._changed = threading.Condition()
-        self._sharing = 0
+        self._sharing_count = 0
 
     @contextmanager
     def shared(self) -> Iterator[None]:
-        """Use the machine while others may use it."""
+        """Use the machine together with others."""
         with self._turn, self._changed:
-            self._sharing += 1
+            self._sharing_count += 1
         try:
             yield
         finally:
             with self._changed:
-                self._sharing -= 1
+                self._sharing_count -= 1
                 self._changed.notify()
 
     @contextmanager
     def exclusive(self) -> Iterator[None]:
-        """Use the machine while no other does."""
+        """Use the machine alone."""
         with self._turn, self._changed:
-            self._changed.wait_for(lambda: self._sharing == 0)
+            self._changed.wait_for(lambda: self._sharing_count == 0)
             yield

@@ -1,4 +1,4 @@
-"""Calls a function with many items, several at once."""
+"""Calls a function with each of many items, several at once."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 
-def map_parallel(do: Callable[[T], R], items: Sequence[T], *, jobs: int, on_done: Callable[[R], None]) -> tuple[R, ...]:
-    """Call `do` with each item, `jobs` at once; return the results in the order of the items.
+def map_parallel(
+    function: Callable[[T], R], items: Sequence[T], *, jobs: int, on_done: Callable[[R], None]
+) -> tuple[R, ...]:
+    """Call `function` with each item, `jobs` at once; return the results in the order of the items.
 
     `on_done` gets each result as soon as it is available. After an exception or Ctrl-C, no further call begins. The
     first exception is raised when the running calls have finished.
     """
     with ThreadPoolExecutor(jobs) as pool:
-        running = [pool.submit(do, item) for item in items]
+        futures = [pool.submit(function, item) for item in items]
         try:
-            for future in as_completed(running):
+            for future in as_completed(futures):
                 on_done(future.result())
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
-        return tuple(future.result() for future in running)
+        return tuple(future.result() for future in futures)

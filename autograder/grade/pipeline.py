@@ -1,7 +1,7 @@
 """Grades one submission in a worker sandbox, and retries once if the grader itself failed.
 
-A program that cannot be stepped may lose a point that it deserves on a busy machine. Where the machine was seen to hold
-it up and it lost a point, the submission is graded once more while this process grades nothing else.
+On a busy machine, a program that runs in real time may lose a point that it deserves. If the machine delayed the
+program and it lost a point, the submission is graded again while this process grades nothing else.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import UsageError
 from autograder.grade.job import Job
 from autograder.grade.machine_lock import MachineLock
-from autograder.grade.own_sandbox import in_own_sandbox
-from autograder.grade.reply import ReplyError, checked
+from autograder.grade.own_sandbox import run_in_own_sandbox
+from autograder.grade.reply import ReplyError, check_reply
 from autograder.grade.store import LOG, write_result
 from autograder.result.model import Build, CheckResult, Result, Status
 from autograder.ros.launch_packages import describe_launch
@@ -26,8 +26,8 @@ from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.suite import suites
 
 TRIES = 2
-LEAST = 1 / 4  # of the time that a submission has: a try with less would only show that it is too little
-DEFAULT_SEED = 2026  # of every grading that names none, so that the ways to grade draw the same inputs
+MIN_SHARE = 1 / 4  # the part of a submission's time that a try needs; with less, it would only run out of time
+DEFAULT_SEED = 2026  # for every grading without an explicit seed, so that all commands draw the same inputs
 
 RunJob = Callable[[Job], WorkerReport]
 """Runs a job in a worker sandbox."""
@@ -36,16 +36,16 @@ RunJob = Callable[[Job], WorkerReport]
 _machine = MachineLock()
 
 
-def grade_submission(job: Job, run_job: RunJob = in_own_sandbox) -> Result:
-    """Grade one submission; `run_job` runs its worker. An old result stays until the new one is complete.
+def grade_submission(job: Job, run_job: RunJob = run_in_own_sandbox) -> Result:
+    """Grade one submission; `run_job` runs its worker. An old result is not removed before the new one is complete.
 
     Returns:
         The result. Its `status` is `not_graded` if the grader failed twice, or did not end in time. This is not a zero.
         It is in doubt if the machine delayed real-time programs in both tries.
 
     Raises:
-        UsageError: there is no such path or assignment.
-        IsolationError: this machine cannot isolate the submission so.
+        UsageError: the path or the assignment does not exist.
+        IsolationError: this machine does not support the isolation level.
     """
     suites.hidden(job.assignment)
     if not job.path.exists():
@@ -62,63 +62,64 @@ def grade_submission(job: Job, run_job: RunJob = in_own_sandbox) -> Result:
 
 
 class Budget:
-    """The real time that one submission has, for all its gradings together."""
+    """The real time that one submission has for all its gradings together."""
 
     def __init__(self, seconds: float) -> None:
-        self.seconds = self.left = seconds
+        self.seconds = self.remaining = seconds
 
     @property
     def is_enough(self) -> bool:
-        """Whether a grading may begin."""
-        return self.left >= LEAST * self.seconds
+        """Whether the remaining time is enough for another try."""
+        return self.remaining >= MIN_SHARE * self.seconds
 
     def spend(self, job: Job, run_job: RunJob) -> WorkerReport:
-        """Run a job in the remaining time. Waiting for a turn on the machine does not count."""
-        began = time.monotonic()
+        """Run a job in the remaining time, and subtract the time it takes. Waiting for the machine does not count."""
+        start = time.monotonic()
         try:
-            return run_job(replace(job, seconds=self.left))
+            return run_job(replace(job, seconds=self.remaining))
         finally:
-            self.left -= time.monotonic() - began
+            self.remaining -= time.monotonic() - start
 
 
 def _grade(job: Job, run_job: RunJob, budget: Budget) -> tuple[Result, Mapping[str, bytes]]:
     """Return a worker's result with its files. If it has none, return a result without marks, with the log.
 
-    A worker may have been taken over. Nothing of its answer is used before it was checked.
+    Students' code may have taken over the worker, so no part of its reply is used before it has been checked.
     """
-    log, why, tries = "", "", 0
+    log, reason, tries = "", "", 0
     while tries < TRIES and budget.is_enough:
         tries += 1
-        report = budget.spend(replace(job, last=tries == TRIES), run_job)
+        report = budget.spend(replace(job, is_last_try=tries == TRIES), run_job)
         log = f"The worker ended: {report.exit_reason.value}, {report.returncode}.\n{report.output}"
-        why = f"The grader failed on this submission{f', {tries} times' if tries > 1 else ''}."
+        reason = f"The grader failed on this submission{f', {tries} times' if tries > 1 else ''}."
         if report.exit_reason is ExitReason.WALL_TIME:
-            why = f"The grading did not end within {budget.seconds / 60:.0f} minutes."
+            reason = f"The grading did not end within {budget.seconds / 60:.0f} minutes."
         if report.returncode == 0 and report.files:
             try:
-                return checked(report.files, job), report.files
+                return check_reply(report.files, job), report.files
             except ReplyError as error:
                 log += f"\n{error}"
-    return not_graded(job, why, log)
+    return not_graded_result(job, reason, log)
 
 
-def not_graded(job: Job, why: str, log: str) -> tuple[Result, Mapping[str, bytes]]:
+def not_graded_result(job: Job, reason: str, log: str) -> tuple[Result, Mapping[str, bytes]]:
     """Return the result of a submission on which the grader failed, and its files. It is not a zero.
 
-    `why` is a sentence about the failure. The log is never part of the result: its traceback may quote a hidden
-    check, and results become feedback.
+    `reason` is a sentence about the failure. The log is not part of the result, because its traceback may quote a
+    hidden check, and students read results as feedback.
     """
     sentence = (
-        f"{why} This is not a zero: an instructor has to grade it again. {LOG}, beside the result, says what happened."
+        f"{reason} This is not a zero: an instructor has to grade it again. "
+        f"{LOG}, beside the result, says what happened."
     )
-    result = refused(job, Diagnosis(Kind.NOT_GRADED, sentence))
+    result = unclear_result(job, Diagnosis(Kind.NOT_GRADED, sentence))
     checks = tuple(replace(check, message="not graded") for check in result.checks)
     result = replace(result, status=Status.NOT_GRADED, checks=checks, build=None, phases={})
     return result, {LOG: log.encode("utf-8", "backslashreplace")}
 
 
-def refused(job: Job, diagnosis: Diagnosis) -> Result:
-    """Return the result of a submission that is unclear: intake refused it, for this reason."""
+def unclear_result(job: Job, diagnosis: Diagnosis) -> Result:
+    """Return the result of a submission that intake rejected as unclear."""
     suite = job.suite
     return Result(
         assignment=suite.assignment,

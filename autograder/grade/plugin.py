@@ -1,11 +1,12 @@
-"""The pytest plug-in of a grading: it turns a suite's checks into results, and other errors into failures.
+"""The pytest plug-in of a grading. It collects the results of a suite's checks, and the errors of the grader.
 
-A check that raises any other exception fails if the student's data was read: if the check, or one of its fixtures,
-passed a door of `autograder.submission.reading`. The instructor is told. Without such data, it is a failure of the
-grader.
+If a check raises an unexpected exception after it or one of its fixtures has read the student's data in a block of
+`autograder.submission.reading`, the check fails, and the result reports the exception to the instructor. If no such
+data was read, the exception is an error of the grader.
 
-The checks of every chapter, visible and hidden, have its fixtures. A chapter's own fixtures are in its conftest.py, or
-in the one module that uses them. `autograder.harness.Shared` keeps a harness for several checks.
+The checks of every chapter, visible and hidden, can use the fixtures of this plug-in. A chapter defines its own
+fixtures in its conftest.py, or in the only module that uses them. `autograder.harness.Shared` keeps a harness for
+several checks.
 """
 
 from __future__ import annotations
@@ -28,26 +29,26 @@ from autograder.result.artifacts import Artifacts
 from autograder.result.model import CheckResult
 from autograder.run import patience
 from autograder.run.workspace import Workspace
-from autograder.submission.reading import in_hand, is_of_data, is_of_the_machine, put_down
+from autograder.submission.reading import clear_recorded_data, is_data_error, is_machine_error, recorded_data
 from autograder.suite import Check, CheckFailed, Outcome, check_of
 
 
 class GradingPlugin:
-    """Collects a result for each check, in memory of the trusted process.
+    """Collects a result for each check, in the memory of the trusted process.
 
     Args:
         workspace: the student's built workspace.
-        seed: every hidden input of the run is drawn from it.
-        artifacts: saves the pictures; each check gets its own.
+        seed: the number from which every hidden input is drawn.
+        artifacts: saves the pictures of each check.
         builds: the outcome of each package's build, for checks of a build that may fail.
         options: how the suite is run.
-        last: whether no other try of this grading follows.
+        is_last_try: whether this is the last try of this grading.
 
     Attributes:
-        results: by check id, in the order in which they ran.
-        diagnosis: the first thing that was wrong with the student's program, or OK.
-        failures: tracebacks of the grader's own errors; any of them makes the submission "not graded".
-        unjudged: by check id, the traceback of an error that its code raised over data of the student's.
+        results: by check id, in the order in which the checks ran.
+        diagnosis: the first problem with the student's program, or OK.
+        failures: tracebacks of the grader's own errors; any of these makes the submission "not graded".
+        unjudged: by check id, the traceback of an error in the check that the student's data caused.
     """
 
     def __init__(
@@ -57,25 +58,25 @@ class GradingPlugin:
         artifacts: Artifacts,
         builds: Mapping[str, Diagnosis] | None = None,
         options: Options = WHOLE_SUITE,
-        last: bool = False,
+        is_last_try: bool = False,
     ) -> None:
         self._workspace = workspace
         self._builds = builds or {}
         self._options = options
-        self._last = last
+        self._is_last_try = is_last_try
         self._seed = seed
         self._artifacts = artifacts
         self.results: dict[str, CheckResult] = {}
         self.diagnosis: Diagnosis = OK
         self.failures: list[str] = []
         self.unjudged: dict[str, str] = {}
-        self._held_by: dict[str, tuple[str, ...]] = {}  # data read by each fixture
+        self._data_by_fixture: dict[str, tuple[str, ...]] = {}  # names of the data that each fixture read
         self._seconds: dict[str, float] = {}
 
     @property
     def is_finished(self) -> bool:
-        """Whether the run ends with the first check that does not pass, and one did not."""
-        return self._options.first_loss and any(r.outcome is not Outcome.PASSED for r in self.results.values())
+        """Whether the run is over because it stops at the first check that does not pass."""
+        return self._options.exit_first and any(r.outcome is not Outcome.PASSED for r in self.results.values())
 
     @pytest.fixture(scope="session")
     def workspace(self) -> Workspace:
@@ -94,7 +95,7 @@ class GradingPlugin:
 
     @pytest.fixture
     def draw(self, request: pytest.FixtureRequest) -> random.Random:
-        """Random numbers of the running check, the same for the same seed."""
+        """Random numbers for the running check, always the same for a seed."""
         return random.Random(f"{self._seed}:{request.function.__name__}")
 
     @pytest.fixture
@@ -104,7 +105,7 @@ class GradingPlugin:
         return self._artifacts.of("" if check is None else check.id)
 
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[Any]) -> None:
-        check = _declared_by(item)
+        check = _check_of_item(item)
         if check is not None:
             self._record(check, call, item)
         if self.is_finished or self.failures:  # a failed grading is repeated, or ends without a result
@@ -115,13 +116,13 @@ class GradingPlugin:
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         if only := self._options.only:
-            items[:] = [item for item in items if (check := _declared_by(item)) and check.id in only]
+            items[:] = [item for item in items if (check := _check_of_item(item)) and check.id in only]
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
-        check = _declared_by(item)
-        put_down()
+        check = _check_of_item(item)
+        clear_recorded_data()
         patience.require()
-        self._workspace.exchanges.take()  # those before this check are not its own
+        self._workspace.exchanges.take()  # drop exchanges that belong to an earlier check
         for needed in check.needs if check else ():
             if self.results[needed].outcome is not Outcome.PASSED:
                 pytest.skip(f'first "{self.results[needed].title}" has to pass')
@@ -129,7 +130,7 @@ class GradingPlugin:
     @pytest.hookimpl(hookwrapper=True)
     def pytest_fixture_setup(self, fixturedef: Any) -> Iterator[None]:
         yield
-        self._held_by[fixturedef.argname] = in_hand()
+        self._data_by_fixture[fixturedef.argname] = recorded_data()
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed:
@@ -141,9 +142,9 @@ class GradingPlugin:
         if error is None:
             if call.when != "call":
                 return
-            verdict = CheckResult.of(check, Outcome.PASSED, seconds=seconds)
+            check_result = CheckResult.of(check, Outcome.PASSED, seconds=seconds)
         elif isinstance(error, CheckFailed):
-            verdict = CheckResult.of(
+            check_result = CheckResult.of(
                 check,
                 Outcome.FAILED,
                 error.message,
@@ -151,55 +152,57 @@ class GradingPlugin:
                 seconds=seconds,
                 hints=error.hints,
             )
-        elif isinstance(error, StudentError) or (isinstance(error, DoubtfulError) and self._is_last):
+        elif isinstance(error, StudentError) or (isinstance(error, DoubtfulError) and self._is_final):
             if self.diagnosis is OK:
                 self.diagnosis = error.diagnosis
-            diagnosis = error.diagnosis  # the hints of the check are about a program that runs
-            verdict = CheckResult.of(check, Outcome.FAILED, diagnosis.sentence, seconds=seconds, hints=diagnosis.hints)
+            diagnosis = error.diagnosis  # the hints of the check assume a program that runs
+            check_result = CheckResult.of(
+                check, Outcome.FAILED, diagnosis.sentence, seconds=seconds, hints=diagnosis.hints
+            )
         elif isinstance(error, pytest.skip.Exception):
-            verdict = CheckResult.not_checked(check, str(error), seconds=seconds)
-        elif self._is_over_data(error) and (data := self._in_hand(item)):
+            check_result = CheckResult.not_checked(check, str(error), seconds=seconds)
+        elif self._is_caused_by_data(error) and (data := self._data_name(item)):
             self.unjudged[check.id] = "".join(traceback.format_exception(error))
             sentence = (
                 f"{data} could not be judged, because it is nothing that this check expects "
                 f"({type(error).__name__}). Your instructor can see where."
             )
-            verdict = CheckResult.of(check, Outcome.FAILED, sentence, seconds=seconds)
+            check_result = CheckResult.of(check, Outcome.FAILED, sentence, seconds=seconds)
         else:
             self.failures.append("".join(traceback.format_exception(error)))
-            verdict = CheckResult.not_checked(check, "the grader failed here", seconds=seconds)
+            check_result = CheckResult.not_checked(check, "the grader failed here", seconds=seconds)
         self.results[check.id] = replace(
-            verdict, talk=self._workspace.exchanges.take() if self._options.pictures else ()
+            check_result, talk=self._workspace.exchanges.take() if self._options.pictures else ()
         )
 
     @property
-    def _is_last(self) -> bool:
-        return self._last or patience.is_late()
+    def _is_final(self) -> bool:
+        return self._is_last_try or patience.is_late()
 
-    def _is_over_data(self, error: BaseException) -> bool:
-        """Return whether the student's data may have caused an exception. In the last try, any exception counts."""
-        any_can = self._is_last and isinstance(error, Exception) and not isinstance(error, AutograderError)
-        return is_of_data(error) or (any_can and not is_of_the_machine(error))
+    def _is_caused_by_data(self, error: BaseException) -> bool:
+        """Return whether the student's data is blamed for an exception. In the last try, it is for almost any."""
+        is_unexpected = self._is_final and isinstance(error, Exception) and not isinstance(error, AutograderError)
+        return is_data_error(error) or (is_unexpected and not is_machine_error(error))
 
-    def _in_hand(self, item: pytest.Item) -> str:
-        """Return the name of the data that came last into a check's hands; an empty string if it has none."""
-        fixtures = (self._held_by.get(name, ()) for name in getattr(item, "fixturenames", ()))
-        return next(reversed([*itertools.chain(*fixtures), *in_hand()]), "")
+    def _data_name(self, item: pytest.Item) -> str:
+        """Return the name of the student's data that a check or its fixtures read last, or an empty string."""
+        fixtures = (self._data_by_fixture.get(name, ()) for name in getattr(item, "fixturenames", ()))
+        return next(reversed([*itertools.chain(*fixtures), *recorded_data()]), "")
 
 
-def _declared_by(item: pytest.Item) -> Check | None:
+def _check_of_item(item: pytest.Item) -> Check | None:
     return check_of(getattr(item, "function", None))
 
 
 def run(files: tuple[Path, ...], plugin: GradingPlugin) -> int:
-    """Run a suite's modules under pytest with nothing of the machine's or the submission's configuration."""
+    """Run a suite's modules with pytest, without any configuration of the machine or the submission."""
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     for variable in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
         os.environ.pop(variable, None)
-    # The end of pytest's session collects garbage twice, which takes a fifth of a second.
-    unwanted = ("cacheprovider", "terminal", "faulthandler", "unraisableexception")
-    chapter = files[0].parents[1]  # its conftest.py serves the visible and the hidden checks
-    arguments = [word for name in unwanted for word in ("-p", f"no:{name}")]
+    # At the end of a session, unraisableexception collects garbage twice, which takes 0.2 s.
+    disabled_plugins = ("cacheprovider", "terminal", "faulthandler", "unraisableexception")
+    chapter = files[0].parents[1]  # its conftest.py applies to visible and hidden checks
+    arguments = [word for name in disabled_plugins for word in ("-p", f"no:{name}")]
     arguments += ["-c", "/dev/null", "--rootdir", str(chapter), "--confcutdir", str(chapter)]
     arguments += ["--import-mode=importlib", "-W", "default"]
     return int(pytest.main([*arguments, *map(str, files)], plugins=[plugin]))

@@ -1,7 +1,7 @@
-"""Runs a submitted notebook in the sandbox, client and kernel. Its cells write files into a fresh workspace.
+"""Runs a submitted notebook in the sandbox, both the client and the kernel. Its cells write files to a new workspace.
 
-No message of the kernel reaches this process: a program in the sandbox takes them, and answers with the outputs of each
-cell in bounded JSON (`notebook_runner`). The cells' own text is the grader's, never the answer's.
+This process receives no messages of the kernel. A program in the sandbox receives them, and answers with the outputs of
+each cell in bounded JSON (`notebook_runner`). The cells' texts are never taken from the answer.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ from sim.grading import GRADING_VARIABLE
 
 RUNNER = Path(__file__).with_name("notebook_runner.py")
 CELL_SECONDS = 60  # wall time of a cell; one that takes longer ends the run
-MAX_OUTPUT = 4 * 1024 * 1024  # characters
-MAX_WHY = 2000  # characters
-MAX_ANSWER = 32 * 1024 * 1024  # bytes of all outputs; the rest is left out
-MAX_LINES = 2000  # of an answer, which has one for each cell
-MAX_VALUES = 200_000  # in all outputs: to check one takes up to 0.1 ms, and they may be forged
+MAX_OUTPUT = 4 * 1024 * 1024  # characters of all messages of the kernel
+MAX_REASON = 2000  # characters of the reason why a run ended early
+MAX_ANSWER = 32 * 1024 * 1024  # bytes of all outputs; further bytes are ignored
+MAX_LINES = 2000  # lines of an answer, which has one for each cell
+MAX_VALUES = 200_000  # values in all outputs, which may be forged: validating a value takes up to 0.1 ms
 WRITEFILE = "%%writefile "
 
 
@@ -48,11 +48,11 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
     """Restore the cells of a submitted notebook that students may not change, run it, and save it with its outputs.
 
     Args:
-        submitted: content of the submitted notebook.
-        original: path of the source notebook.
-        folder: folder of the assignment, with `ws/`. The notebook may write there.
-        workspace: workspace whose ROS 2 and scratch folder are used.
-        out: path of the executed notebook.
+        submitted: the content of the submitted notebook.
+        original: the path of the source notebook.
+        folder: the folder of the assignment, with `ws/`. The notebook may write to it.
+        workspace: the workspace whose ROS 2 and scratch folder are used.
+        out: the path of the executed notebook.
     """
     source = nbformat.read(original, as_version=4)
     notebook = submitted_notebook.restore(submitted_notebook.read(submitted, original.name), source)
@@ -60,34 +60,35 @@ def run(submitted: bytes, original: Path, folder: Path, workspace: Workspace, ou
 
 
 def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> NotebookNode:
-    """Run a restored notebook in a sandboxed kernel in `folder`, write the outputs into its cells, and return it.
+    """Run a restored notebook in a sandboxed kernel in `folder`, write the outputs to its cells, and return it.
 
-    A cell that raises does not end the run. A kernel that dies ends it, and the files written before it count.
+    A cell that raises an exception does not end the run. The end of the kernel does, and the files written until then
+    count.
 
     Raises:
-        StudentError: a file of the submission keeps the kernel from starting.
+        StudentError: a file of the submission prevents the kernel from starting.
         GraderError: the sandbox does not answer before the student's code is started.
     """
     (workspace.scratch / "jupyter").mkdir(exist_ok=True)
     skipped = [index for index, cell in enumerate(notebook.cells) if _would_overwrite(cell, folder)]
-    order = {"notebook": notebook, "skipped": skipped, "cell_seconds": CELL_SECONDS, "max_output": MAX_OUTPUT}
-    with os.fdopen(os.memfd_create("order"), "w+b") as given, os.fdopen(os.memfd_create("answer"), "w+b") as taken:
-        given.write(json.dumps(order).encode())
-        given.seek(0)
-        begun, theirs = os.pipe()
-        with os.fdopen(begun, "rb") as begins:
-            with os.fdopen(theirs, "wb"):
-                descriptors = given.fileno(), taken.fileno(), theirs
+    request = {"notebook": notebook, "skipped": skipped, "cell_seconds": CELL_SECONDS, "max_output": MAX_OUTPUT}
+    with os.fdopen(os.memfd_create("request"), "w+b") as sent, os.fdopen(os.memfd_create("answer"), "w+b") as received:
+        sent.write(json.dumps(request).encode())
+        sent.seek(0)
+        read_end, write_end = os.pipe()
+        with os.fdopen(read_end, "rb") as started:
+            with os.fdopen(write_end, "wb"):
+                descriptors = sent.fileno(), received.fileno(), write_end
                 command = [sys.executable, str(RUNNER), *map(str, descriptors)]
                 process = launch(command, _sandbox(folder, workspace), pass_fds=descriptors)
             with process:
                 process.wait(KERNEL.wall_seconds + 10)
-            if not begins.read(1):
+            if not started.read(1):
                 raise GraderError(f"the notebook's sandbox did not answer: {tail(process.output)}")
-        taken.seek(0)
-        answer = read_answer(taken.read(MAX_ANSWER))
-    if answer.why and not answer.cells:
-        raise _no_kernel(process, answer.why)
+        received.seek(0)
+        answer = read_answer(received.read(MAX_ANSWER))
+    if answer.reason and not answer.cells:
+        raise _kernel_error(process, answer.reason)
     for index, cell in enumerate(notebook.cells):
         if index in answer.cells and cell.cell_type == "code":
             cell.outputs, cell.execution_count = answer.cells[index].outputs, answer.cells[index].execution_count
@@ -96,23 +97,23 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
 
 @dataclass(frozen=True)
 class Answer:
-    """The report of a run from the sandbox."""
+    """The report on a run, as received from the sandbox."""
 
-    why: str = ""  # why the run ended early; empty if it finished or gave no reason
-    cells: Mapping[int, NotebookNode] = field(default_factory=dict)  # valid code cells without text, by their places
+    reason: str = ""  # why the run ended early; empty if it finished or gave no reason
+    cells: Mapping[int, NotebookNode] = field(default_factory=dict)  # valid code cells without text, by their indices
 
 
 def read_answer(data: bytes) -> Answer:
     """Read the lines of `notebook_runner`, which the student's code may have forged. Invalid lines are left out."""
-    why, cells, left = "", dict[int, NotebookNode](), MAX_VALUES
+    reason, cells, remaining = "", dict[int, NotebookNode](), MAX_VALUES
     for line in data.split(b"\n", MAX_LINES)[:MAX_LINES]:
         with suppress(StudentError), reading("An output of your notebook"):
             message = json.loads(line, parse_constant=lambda _: None)
             if message["event"] == "end":
-                why = str(message["why"])[:MAX_WHY]
+                reason = str(message["reason"])[:MAX_REASON]
             elif message["event"] == "cell" and type(message["index"]) is int:
-                left -= _count_values(message["outputs"])
-                if left < 0:
+                remaining -= _count_values(message["outputs"])
+                if remaining < 0:
                     continue
                 cell = new_code_cell(
                     outputs=nbformat.from_dict(message["outputs"]), execution_count=message["execution_count"]
@@ -120,45 +121,45 @@ def read_answer(data: bytes) -> Answer:
                 nbformat.validate(new_notebook(cells=[cell]))
                 nbformat.writes(new_notebook(cells=[cell]))
                 cells[message["index"]] = cell
-    return Answer(why, cells)
+    return Answer(reason, cells)
 
 
 def _count_values(value: object) -> int:
     pending, count = [value], 0
     while pending:
-        each = pending.pop()
+        item = pending.pop()
         count += 1
-        pending += each.values() if isinstance(each, dict) else each if isinstance(each, list) else ()
+        pending += item.values() if isinstance(item, dict) else item if isinstance(item, list) else ()
     return count
 
 
-def _no_kernel(process: Process, why: str) -> StudentError:
+def _kernel_error(process: Process, reason: str) -> StudentError:
     sentence = (
         "The notebook's kernel could not start: a file beside the notebook, such as ipykernel_launcher.py, "
         "hides a module of the same name. Rename or remove it."
     )
-    return StudentError(Diagnosis(Kind.NOTEBOOK_FAILED, sentence, tail(process.output) or tail(why)))
+    return StudentError(Diagnosis(Kind.NOTEBOOK_FAILED, sentence, tail(process.output) or tail(reason)))
 
 
 def _would_overwrite(cell: NotebookNode, folder: Path) -> bool:
-    """Return whether an untouched exercise cell would overwrite a file that the student wrote by other means."""
+    """Return whether an unchanged exercise cell would overwrite a file that the student wrote in another way."""
     if cell.cell_type != "code" or STUB not in cell.source or not cell.source.startswith(WRITEFILE):
         return False
     target = cell.source.splitlines()[0].removeprefix(WRITEFILE).strip()
     try:
         path = (folder / target).resolve()
         return bool(path.is_relative_to(folder.resolve()) and path.is_file())
-    except (OSError, ValueError, RuntimeError):  # not a file name: the cell itself will fail with a message
+    except (OSError, ValueError, RuntimeError):  # not a file name: the cell will fail with a message
         return False
 
 
 def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
-    plain = workspace.sandbox(KERNEL)
+    spec = workspace.sandbox(KERNEL)
     environment = {
-        **plain.environment,
+        **spec.environment,
         GRADING_VARIABLE: "1",
         course_paths.COURSE_VARIABLE: str(course_paths.course().root),
-        "USER": "student",  # the sandbox has no /etc/passwd, and ros2 pkg create asks for the user's name
+        "USER": "student",  # the sandbox has no /etc/passwd, and ros2 pkg create needs the user's name
         "IPYTHONDIR": str(workspace.scratch / "ipython"),
         "MPLCONFIGDIR": str(workspace.scratch / "matplotlib"),
         "JUPYTER_RUNTIME_DIR": str(workspace.scratch / "jupyter"),
@@ -168,5 +169,5 @@ def _sandbox(folder: Path, workspace: Workspace) -> Sandbox:
     code = (Path(autograder.__file__).parent, Path(sim.__file__).parent)
     worlds = filter(Path.is_dir, {course_paths.SHARED_WORLDS, course_paths.WORLDS})
     readable = (RUNNER, *code, *worlds, course_paths.course().root / course_paths.COURSE_FILE)
-    mounts = (*plain.mounts, *map(Mount, readable), Mount(folder, writable=True))
-    return replace(plain, workdir=folder, mounts=mounts, environment=environment, network=False)
+    mounts = (*spec.mounts, *map(Mount, readable), Mount(folder, writable=True))
+    return replace(spec, workdir=folder, mounts=mounts, environment=environment, network=False)

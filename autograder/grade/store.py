@@ -1,4 +1,4 @@
-"""The files of a result. A new result takes the place of an old one when it is whole, and not before."""
+"""Writes the files of a result. A new result replaces an old one only when it is complete."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ LOG = "grader.log"
 
 
 def write_result(job: Job, result: Result, files: Mapping[str, bytes]) -> Result:
-    """Write the result of a job, under its student's name, with files by their names; return that result.
+    """Write the result of a job and its `files`, and return the result as written, with the name of the student.
 
-    Until all are written, its folder has the old result, also if the process is killed. The mark changes in one step,
-    as `result.json` is replaced last. Files of the old result that the new one lacks are removed.
+    Until all files are written, the folder contains the old result, even if the process is killed. `result.json` is
+    replaced last, so the mark changes in one step. Files of the old result that the new one does not have are removed.
     """
     out = job.out
     result = replace(result, student=job.student, folder=out)
@@ -30,7 +30,7 @@ def write_result(job: Job, result: Result, files: Mapping[str, bytes]) -> Result
     folder.mkdir(parents=True)
     try:
         for name in files.keys() - {RESULT}:
-            (folder / name).write_bytes(_shown(files[name]) if name == LOG else files[name])
+            (folder / name).write_bytes(_escape_log(files[name]) if name == LOG else files[name])
         write_json(folder / RESULT, result.to_json())
         _replace(folder, out)
     finally:
@@ -38,8 +38,8 @@ def write_result(job: Job, result: Result, files: Mapping[str, bytes]) -> Result
     return result
 
 
-def _shown(log: bytes) -> bytes:
-    """Return a log for a terminal, where an instructor reads it: it quotes names and texts of a student's."""
+def _escape_log(log: bytes) -> bytes:
+    """Escape the control characters of a log, which quotes students' texts and which instructors read in a terminal."""
     return visible(log.decode("utf-8", "replace")).encode("utf-8", "backslashreplace")
 
 
@@ -49,18 +49,18 @@ def remove_unfinished(out: Path) -> None:
 
 
 def _replace(folder: Path, out: Path) -> None:
-    fresh = {path.name for path in folder.iterdir()}
-    for name in sorted(fresh - {RESULT}):
+    new_names = {path.name for path in folder.iterdir()}
+    for name in sorted(new_names - {RESULT}):
         (folder / name).replace(out / name)
-    stale = {NOTEBOOK, LOG, *_artifacts(out / RESULT)} - fresh
+    obsolete = {NOTEBOOK, LOG, *_artifacts(out / RESULT)} - new_names
     for path in out.iterdir():
-        if path.name in stale:
+        if path.name in obsolete:
             path.unlink()
     (folder / RESULT).replace(out / RESULT)
 
 
 def _artifacts(result: Path) -> set[str]:
-    """Return the names of the pictures and runs of a stored result, none if it cannot be read."""
+    """Return the names of the pictures and runs of a stored result, or an empty set if it cannot be read."""
     if not result.is_file():
         return set()
     try:

@@ -1,7 +1,7 @@
 """Restores the cells of a submitted notebook that students may not change.
 
-Locked cells get the text of the source notebook. Deleted cells are added again. Copies of graded cells lose their grade
-id. Points, cell types and grade ids come from the source notebook, never from the submission.
+Locked cells get the text of the source notebook. Deleted cells are restored. Copies of graded cells lose their grade
+id. Points, cell types and grade ids are taken from the source notebook, never from the submission.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ STUB = "YOUR CODE HERE"
 
 
 def read(data: bytes, name: str) -> NotebookNode:
-    """Read a submitted notebook, without its outputs; `name` is the file's, for the error.
+    """Read a submitted notebook, without its outputs; `name` is the file's name in the error.
 
     Raises:
-        StudentError: the file is not JSON, not a notebook or one of another format, or it has too many cells.
+        StudentError: the file is not JSON, not a notebook or a notebook of another format, or it has too many cells.
     """
     try:
         notebook = _notebook(read_cells(data))
@@ -44,51 +44,51 @@ def read(data: bytes, name: str) -> NotebookNode:
 def _notebook(cells: list[Cell]) -> NotebookNode:
     """Return a notebook of format 4.5 with these cells."""
     no_outputs: dict[str, object] = {"outputs": [], "execution_count": None}
-    full = [{**cell, **(no_outputs if cell["cell_type"] == "code" else {})} for cell in cells]
-    notebook: NotebookNode = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": full})
+    nodes = [{**cell, **(no_outputs if cell["cell_type"] == "code" else {})} for cell in cells]
+    notebook: NotebookNode = nbformat.from_dict({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": nodes})
     return notebook
 
 
 def restore(submitted: NotebookNode, source: NotebookNode) -> NotebookNode:
     """Return a copy of the submitted notebook with the source notebook's nbgrader cells, and without outputs.
 
-    Cells that students may edit keep the student's text. If the student deleted such a cell, it comes back with a
-    comment that says so. The student's own cells have no metadata: it is never read, and cells can be many.
+    Cells that students may edit keep the student's text. If the student deleted such a cell, it is restored with a
+    comment that reports this. Cells that the student added lose their metadata, which is never read and may be large.
     """
     originals = {grade_id(cell): cell for cell in source.cells if grade_id(cell)}
-    names = _names(submitted.cells, source.cells)
-    bare = [NotebookNode({**cell, "metadata": NotebookNode()}) for cell in submitted.cells]
-    notebook = copy.deepcopy(NotebookNode({**submitted, "cells": bare}))
-    seen: set[str] = set()
-    for cell, name in zip(notebook.cells, names, strict=True):
-        if name in originals and name not in seen:
-            seen.add(name)
+    ids = _grade_ids(submitted.cells, source.cells)
+    cells = [NotebookNode({**cell, "metadata": NotebookNode()}) for cell in submitted.cells]
+    notebook = copy.deepcopy(NotebookNode({**submitted, "cells": cells}))
+    restored: set[str] = set()
+    for cell, name in zip(notebook.cells, ids, strict=True):
+        if name in originals and name not in restored:
+            restored.add(name)
             _restore_cell(cell, originals[name])
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
-    notebook.cells += [_restored_cell(cell) for name, cell in originals.items() if name not in seen]
+    notebook.cells += [_deleted_cell(cell) for name, cell in originals.items() if name not in restored]
     notebook.metadata = copy.deepcopy(source.metadata)
     return notebook
 
 
-def _names(cells: list[NotebookNode], source: list[NotebookNode]) -> list[str]:
-    """Return the grade ids of submitted cells, also of those whose metadata a tool has dropped.
+def _grade_ids(cells: list[NotebookNode], source: list[NotebookNode]) -> list[str]:
+    """Return the grade ids of submitted cells, including cells whose metadata a tool has dropped.
 
-    Such a cell is known by its own id, or an answer by the beginning of the cell above it, which asks the question.
+    Such a cell is recognised by its cell id. An answer is also recognised by the first line of the question above it.
     """
     names = [grade_id(cell) for cell in cells]
     ids = {cell.get("id"): grade_id(cell) for cell in source}
-    below = {
+    by_question = {
         (_first_line(above), cell.cell_type): grade_id(cell)
         for above, cell in pairwise(source)
         if cell.metadata.get("nbgrader", {}).get("solution")
     }
-    aboves = [None, *cells[:-1]] if cells else []
-    for index, (above, cell) in enumerate(zip(aboves, cells, strict=True)):
+    preceding = [None, *cells[:-1]] if cells else []
+    for index, (above, cell) in enumerate(zip(preceding, cells, strict=True)):
         if not names[index] and (name := ids.get(cell.get("id"), "")) not in names:
             names[index] = name
         if not names[index] and above is not None and "nbgrader" not in cell.metadata:
-            name = below.get((_first_line(above), cell.cell_type), "")
+            name = by_question.get((_first_line(above), cell.cell_type), "")
             names[index] = name if name not in names else ""
     return names
 
@@ -97,8 +97,8 @@ def _first_line(cell: NotebookNode) -> str:
     return str(cell.source).strip().partition("\n")[0].strip()
 
 
-def _restored_cell(original: NotebookNode) -> NotebookNode:
-    """Return a deleted cell. An exercise comes back without its answer, which the source notebook holds."""
+def _deleted_cell(original: NotebookNode) -> NotebookNode:
+    """Return a new copy of a deleted cell. If it is an exercise, the copy omits the answer in the source notebook."""
     cell = copy.deepcopy(original)
     if cell.metadata.nbgrader.get("solution"):
         cell.source = DELETED
@@ -107,15 +107,15 @@ def _restored_cell(original: NotebookNode) -> NotebookNode:
 
 def grade_id(cell: NotebookNode) -> str:
     """Return the grade id of a cell, or an empty string."""
-    marks = cell.metadata.get("nbgrader")
-    name = marks.get("grade_id") if isinstance(marks, dict) else None
+    nbgrader = cell.metadata.get("nbgrader")
+    name = nbgrader.get("grade_id") if isinstance(nbgrader, dict) else None
     return name if isinstance(name, str) else ""
 
 
 def _restore_cell(cell: NotebookNode, original: NotebookNode) -> None:
-    marks = original.metadata.nbgrader
-    if marks.get("locked") or not marks.get("solution") or cell.cell_type != original.cell_type:
-        text = cell.source if marks.get("solution") and not marks.get("locked") else original.source
+    nbgrader = original.metadata.nbgrader
+    if nbgrader.get("locked") or not nbgrader.get("solution") or cell.cell_type != original.cell_type:
+        text = cell.source if nbgrader.get("solution") and not nbgrader.get("locked") else original.source
         cell.clear()
         cell.update(copy.deepcopy(original))
         cell.source = text

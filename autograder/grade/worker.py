@@ -3,7 +3,7 @@
     python -m autograder.grade.worker JOB DESCRIPTOR
 
 It imports no student code, which runs in sandboxes inside this one. It sends `result.json` and the pictures over the
-line whose end is the descriptor, or ends with a traceback, which is a failure of the grader.
+connection with this descriptor. If the grader fails, it ends with a traceback instead.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _NO_DIGEST = "0" * 64
 
 
 class Grading:
-    """One submission, from its files to a result."""
+    """Grades one submission, from its files to a result."""
 
     def __init__(self, job: Job) -> None:
         self._job, self._suite = job, job.suite
@@ -53,7 +53,7 @@ class Grading:
         patience.begin(job.seconds)
         home = job.scratch / "home"
         home.mkdir(parents=True)
-        # Without a network namespace, at least a separate domain keeps two submissions apart.
+        # Without a network namespace, only separate domains keep two submissions apart.
         domain = 0 if job.isolation is Isolation.BUBBLEWRAP else Domain().number
         self._workspace = Workspace(job.scratch / "ws", activate(), home, domain=domain)
         self._artifacts = Artifacts(job.out, disabled=not job.options.pictures, recordings=job.options.recordings)
@@ -67,16 +67,16 @@ class Grading:
         self._unjudged: dict[str, str] = {}
 
     def grade(self) -> Result:
-        """Take the submission through every phase; a fault of the student's ends it early, with a diagnosis."""
-        began, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
+        """Execute all phases. A StudentError ends the grading early, with a diagnosis."""
+        start, started = time.monotonic(), datetime.now(timezone.utc).isoformat(timespec="seconds")
         results: dict[str, CheckResult] = {}
         try:
-            observed = self._prepare()
-            checked = self._check(results)
-            diagnosis = checked if observed is OK else observed
+            build_diagnosis = self._prepare()
+            check_diagnosis = self._check(results)
+            diagnosis = check_diagnosis if build_diagnosis is OK else build_diagnosis
         except StudentError as error:
             diagnosis = error.diagnosis
-            if error.__cause__ is not None:  # an error that no reader of this data expects
+            if error.__cause__ is not None:  # an exception that the code reading the data does not handle
                 self._log(traceback.format_exception(error))
         if self._build is None and diagnosis is not OK:
             self._build = Build(False, self._phases.get("build", 0.0), log=diagnosis.detail)
@@ -96,7 +96,7 @@ class Grading:
             ),
             max_score=self._suite.max_score,
             started=started,
-            seconds=round(time.monotonic() - began, 2),
+            seconds=round(time.monotonic() - start, 2),
             diagnosis=diagnosis,
             build=self._build,
             artifacts=tuple(self._artifacts.saved),
@@ -111,7 +111,7 @@ class Grading:
         )
 
     def _prepare(self) -> Diagnosis:
-        """Read the submission, run its notebook, build it; return the diagnosis of a build that the suite lets fail."""
+        """Read the submission, run its notebook and build it; return the diagnosis of a build that may fail."""
         from autograder.building.build import build_workspace
         from autograder.building.prebuilt import copy_prebuilt
         from autograder.submission import intake
@@ -127,45 +127,45 @@ class Grading:
                 from autograder.grade import run_notebook
 
                 write_tree(submission.extra, self._folder)
-                start = intake.with_given_packages(submission, self._job.assignment)
-                write_tree(start, self._folder / "ws" / "src")
+                packages_before = intake.with_given_packages(submission, self._job.assignment)
+                write_tree(packages_before, self._folder / "ws" / "src")
                 original = course_paths.source_notebook(self._job.assignment)
                 run_notebook.run(submission.notebook, original, self._folder, self._workspace, self._job.out / NOTEBOOK)
-                # The notebook could write links and devices to all of this. Only plain files of it are taken.
-                written = intake.read_packages(self._folder / "ws")
+                # The notebook could write links and devices, but only plain files are read.
+                written_files = intake.read_packages(self._folder / "ws")
                 self._clear()
-                counted = intake.what_counts(submission, written, self._job.assignment)
+                counted = intake.graded_packages(submission, written_files, self._job.assignment)
                 packages, self._notices = counted.packages, counted.notices
         assert packages is not None, "only a notebook creates packages that were not submitted"
         source = self._workspace.root / "src"
         with reading("Your submission"):
             write_tree(packages, source)
         with self._phase("build"), reading("Your packages, or what their build left,"):
-            if built := self._job.options.built:
-                seen = copy_prebuilt(Path(built), self._workspace, self._suite.packages)
+            if prebuilt := self._job.options.prebuilt:
+                outcome = copy_prebuilt(Path(prebuilt), self._workspace, self._suite.packages)
             else:
-                seen = build_workspace(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
-            # A set-up script could also write to the sources. Checks read the submitted ones.
+                outcome = build_workspace(self._workspace, self._suite.packages, may_fail=self._suite.build_may_fail)
+            # A set-up script could also write to the sources, and checks have to read the submitted ones.
             subprocess.run(["rm", "-rf", "--", source], check=True)
             write_tree(packages, source)
-        self._build, self._builds = seen.build, seen.diagnoses
-        return seen.diagnosis
+        self._build, self._builds = outcome.build, outcome.diagnoses
+        return outcome.diagnosis
 
     def _clear(self) -> None:
-        """Remove the files that the notebook wrote, at any depth, so that a full disk has space again."""
+        """Remove the files that the notebook wrote, at any depth, so that a full disk has free space."""
         subprocess.run(["rm", "-rf", "--", self._folder, self._workspace.scratch], check=True)
         self._workspace.scratch.mkdir()
 
     def _check(self, results: dict[str, CheckResult]) -> Diagnosis:
         plugin = GradingPlugin(
-            self._workspace, self._job.seed, self._artifacts, self._builds, self._job.options, self._job.last
+            self._workspace, self._job.seed, self._artifacts, self._builds, self._job.options, self._job.is_last_try
         )
         with self._phase("checks"):
             run(self._suite.files, plugin)
         ids = self._job.options.only or [check.id for check in self._suite.checks]
-        missing = set(ids) - set(plugin.results)
-        if missing and not plugin.failures and not plugin.is_finished:
-            plugin.failures.append(f"no record of {', '.join(sorted(missing))}")
+        missing_ids = set(ids) - set(plugin.results)
+        if missing_ids and not plugin.failures and not plugin.is_finished:
+            plugin.failures.append(f"no record of {', '.join(sorted(missing_ids))}")
         if plugin.failures:
             raise GraderError("\n".join(plugin.failures))
         results.update(plugin.results)
@@ -175,39 +175,39 @@ class Grading:
         return plugin.diagnosis
 
     def _log(self, tracebacks: Iterable[str]) -> None:
-        """Write tracebacks for the instructor. They are never part of the result: they quote hidden checks."""
+        """Write tracebacks for the instructor. They are not part of the result, because they quote hidden checks."""
         self._job.out.mkdir(parents=True, exist_ok=True)
         (self._job.out / LOG).write_text("\n".join(tracebacks), errors="backslashreplace")
 
     @contextmanager
     def _phase(self, name: str) -> Iterator[None]:
-        began = time.monotonic()
+        start = time.monotonic()
         try:
             yield
         finally:
-            self._phases[name] = round(time.monotonic() - began, 3)
+            self._phases[name] = round(time.monotonic() - start, 3)
 
 
 def prepare() -> None:
-    """Prepare this process for grading: interrupts reach it, and ROS can be imported."""
+    """Prepare this process for grading: let it receive interrupts, and make ROS importable."""
     restore_sigint()
     activate()
 
 
 def work(job: Job) -> None:
-    """Grade a job, and send the files that it left over this process's line."""
+    """Grade a job, and send the files of its result over this process's connection."""
     job.out.mkdir(parents=True, exist_ok=True)
     write_json(job.out / RESULT, Grading(job).grade().to_json())
-    with line.held() as connection:
+    with line.exclusive_line() as connection:
         if connection is not None:
             send_message(connection, {"do": "result"})
             send_tree(connection, read_tree(job.out, RESULT_FILES))
 
 
 def main() -> None:
-    """Grade the job that the command line holds."""
+    """Grade the job that the command line contains."""
     job = Job.from_json(sys.argv[1])
-    line.take(Connection(int(sys.argv[2])))
+    line.set_line(Connection(int(sys.argv[2])))
     prepare()
     work(job)
 

@@ -1,8 +1,9 @@
 """Test harnesses: the trusted process runs a student's nodes in sandboxes and talks with them over DDS.
 
-`SteppedHarness` steps the time of programs. `RealTimeHarness` runs them in real time and can send them signals.
-`AutoHarness` steps programs where that is possible. `launch.LaunchHarness` runs `ros2 launch`. `drive` lets the
-programs steer the simulated robot, in any harness except `LaunchHarness`. `Shared` keeps a harness for several checks.
+`SteppedHarness` advances the programs' time in steps. `RealTimeHarness` runs them in real time, and can send them
+signals. `AutoHarness` steps programs where that is possible. `launch.LaunchHarness` runs `ros2 launch`. `drive` lets
+the programs steer the simulated robot, in any harness except `LaunchHarness`. `Shared` keeps a harness for several
+checks.
 """
 
 from autograder.harness.auto import AutoHarness

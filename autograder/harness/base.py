@@ -1,4 +1,4 @@
-"""The common part of all harnesses: a student's programs, and the grader's node that talks with them over DDS."""
+"""What all harnesses have in common: a student's programs, and the grader's node that talks with them over DDS."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from autograder.ros.domains import Domain
 from autograder.run.lockstep.failures import diagnose_exit
 from autograder.run.sandbox import Mount, Process
 from autograder.run.workspace import Workspace
-from autograder.submission.reading import hold
+from autograder.submission.reading import record_data
 
-MATCH_SECONDS = 30.0  # real time for all endpoints to be matched
-NAME_SECONDS = 5.0  # real time for the names of their nodes
+MATCH_SECONDS = 30.0  # maximum real time until all endpoints are matched
+NAME_SECONDS = 5.0  # maximum real time until the names of the endpoints' nodes are known
 
-_NUMBERS = itertools.count()
+_DOMAIN_OFFSETS = itertools.count()
 _SECONDS = attrgetter("seconds")
 
 AnyHarness = TypeVar("AnyHarness", bound="Harness")
@@ -47,7 +47,7 @@ class Program:
 class Harness(ExitStack, ABC):
     """A student's programs and the grader's node that talks with them over DDS; a context manager.
 
-    Name what the grader publishes and subscribes to, then enter::
+    Name the topics that the grader publishes and subscribes to, then enter the harness::
 
         sensors, commands = {"/scan": LaserScan}, {"/cmd_vel": Twist}
         with SteppedHarness(workspace, PACKAGE, EXECUTABLE, publishes=sensors, subscribes=commands) as harness:
@@ -55,24 +55,24 @@ class Harness(ExitStack, ABC):
             harness.run(0.1)
             harness.messages("/cmd_vel")
 
-    Every method raises `StudentError` when a program crashes, hangs or goes over a limit.
+    Every method raises `StudentError` when a program crashes, hangs or exceeds a limit.
 
     Args:
         workspace: the student's built workspace.
-        package: of the one program; or
-        executable: its name in the package.
-        programs: several programs, which talk with each other as well.
+        package: the package of the program.
+        executable: the name of the program in the package.
+        programs: several programs instead of one. They can also communicate with each other.
         publishes: topics that the grader publishes, with their types.
         subscribes: topics that the grader subscribes to, with their types.
-        arguments: of the one program.
-        clock_rate: seconds that the programs' machine counts in a second of ROS time; always 1 in real time.
+        arguments: the arguments of the program `executable`.
+        clock_rate: how many seconds the programs' system clock advances per second of ROS time; always 1 in real time.
 
     Attributes:
         node: the grader's node; its graph functions show the actual endpoints of the student's programs.
-        tick_ns: the step of ROS time that suits the programs' timers.
-        finest_tick_ns: the shortest step of ROS time, which suits any timer.
-        optional: executables that may fail: the others run on without them.
-        discovery_seconds: for how long the nodes were seen before the grader got their messages; 0 in lockstep.
+        tick_ns: the length of a step of ROS time. It depends on the programs' timers.
+        finest_tick_ns: the length of the shortest step.
+        optional: executables that may fail. The others continue without them.
+        discovery_seconds: the time from the discovery of the nodes to that of their endpoints; 0 in lockstep.
     """
 
     tick_ns = TICK_NS
@@ -96,12 +96,13 @@ class Harness(ExitStack, ABC):
         self._clock_rate = clock_rate
         self.programs = programs or (Program(package, executable, arguments),)
         self._paths = [workspace.executable(program.package, program.executable) for program in self.programs]
-        # Two harnesses may be open at once, with programs of the same names: each has a ROS domain of its own.
-        self._domain = Domain(workspace.domain + next(_NUMBERS))
+        # Each harness has its own ROS domain, because two open harnesses may run programs with the same names.
+        self._domain = Domain(workspace.domain + next(_DOMAIN_OFFSETS))
         self._workspace = replace(workspace, domain=self._domain.number)
-        plain = self._workspace.sandbox()
-        often = {**plain.environment, PROFILES_VARIABLE: str(PROFILES)}  # to discover programs at once
-        self._sandbox = replace(plain, mounts=(*plain.mounts, Mount(PROFILES)), environment=often)
+        sandbox = self._workspace.sandbox()
+        # The profiles make programs discover each other at once.
+        environment = {**sandbox.environment, PROFILES_VARIABLE: str(PROFILES)}
+        self._sandbox = replace(sandbox, mounts=(*sandbox.mounts, Mount(PROFILES)), environment=environment)
         self._publishes, self._subscribes = dict(publishes or {}), dict(subscribes or {})
         self._received: dict[str, list[ReceivedMessage]] = {topic: [] for topic in self._subscribes}
 
@@ -115,7 +116,7 @@ class Harness(ExitStack, ABC):
     @property
     @abstractmethod
     def running(self) -> frozenset[str]:
-        """The executables that the harness has not lost."""
+        """The executables that the harness has not dropped."""
 
     @property
     @abstractmethod
@@ -133,7 +134,7 @@ class Harness(ExitStack, ABC):
 
     @abstractmethod
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Let the programs run until `condition` holds, at most `seconds` of ROS time; return whether it does."""
+        """Let the programs run until `condition` is true, at most `seconds` of ROS time. Return whether it is."""
 
     @abstractmethod
     def _start(self) -> None:
@@ -141,7 +142,7 @@ class Harness(ExitStack, ABC):
 
     @abstractmethod
     def _topics(self) -> tuple[set[str], set[str]]:
-        """Return the topics of `publishes` with a subscription, and those of `subscribes` with a publisher."""
+        """Return the topics of `publishes` that programs subscribe to, and those of `subscribes` that they publish."""
 
     @abstractmethod
     def _connected(self) -> bool:
@@ -155,7 +156,7 @@ class Harness(ExitStack, ABC):
         self.callback(self._grader_node.close)
         self._actions = Actions(self._grader_node, self._arrival_seconds)
         self.node = self._grader_node.node
-        hold("What your program showed of itself")
+        record_data("What your program showed of itself")
         try:
             self._start()
             self._match()
@@ -167,7 +168,7 @@ class Harness(ExitStack, ABC):
     @property
     def output(self) -> str:
         """The output of the programs so far, including their logs."""
-        hold("What your program printed")
+        record_data("What your program printed")
         return "".join(process.output for process in self.processes)
 
     def require_running(self) -> None:
@@ -177,7 +178,7 @@ class Harness(ExitStack, ABC):
                 raise StudentError(diagnose_exit(process))
 
     def takes(self, topic: str) -> bool:
-        """Return whether a program subscribes to a topic that the grader publishes, with the right type."""
+        """Return whether the grader publishes a topic, and a program subscribes to it with the same type."""
         return topic in self._grader_node.publishers
 
     def publish(self, topic: str, message: Any) -> None:
@@ -187,59 +188,59 @@ class Harness(ExitStack, ABC):
 
     def run(self, seconds: float) -> None:
         """Let the programs run for `seconds` of ROS time, tick by tick."""
-        left = round(seconds * 1e9)
-        while left > 0:
-            self.step(min(self.tick_ns, left))
-            left -= self.tick_ns
+        remaining_ns = round(seconds * 1e9)
+        while remaining_ns > 0:
+            self.step(min(self.tick_ns, remaining_ns))
+            remaining_ns -= self.tick_ns
 
     def subscribe(self, topics: Mapping[str, type]) -> None:
-        """Subscribe to more topics, with their types, while the programs run."""
+        """Subscribe to more topics while the programs run. `topics` contains their types by name."""
         self._subscribes.update(topics)
         for topic in topics:
             self._received.setdefault(topic, [])
         self._match()
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:
-        """Return the messages on a topic of `subscribes` after `since` and up to `until`, in s since the start."""
-        hold(f"What your program sent on {topic}")
+        """Return the messages that arrived on a topic after `since` and not after `until`, in s since the start."""
+        record_data(f"What your program sent on {topic}")
         received = self._received[topic]
         first = bisect_right(received, since, key=_SECONDS)
         return received[first : bisect_right(received, until, first, key=_SECONDS)]
 
     def rate(self, topic: str, since: float) -> float:
-        """Return how many messages a second came on `topic` after `since`, in ROS time, until now."""
+        """Return the number of messages per second of ROS time on `topic` between `since` and now."""
         return len(self.messages(topic, since=since)) / (self.seconds - since)
 
     def call(self, service_type: Any, name: str, request: Any, seconds: float = 5.0) -> Any:
-        """Call a service of the student's programs, which run on meanwhile.
+        """Call a service of the student's programs, and let the programs run meanwhile.
 
         Returns:
-            The response, or None without such a service of that type, or without an answer in `seconds` of ROS time.
+            The response, or None if no such service answers within `seconds` of ROS time.
         """
-        hold(f"What {name} answered")
+        record_data(f"What {name} answered")
         answers: list[Any] = []
-        began = self.seconds
+        start = self.seconds
         client = self._grader_node.client(service_type, name)
-        if client is not None and self._reach(client, seconds):
+        if client is not None and self._wait_for_server(client, seconds):
             self._grader_node.ask(service_type, name, request, answers.append)
-            if self.until(lambda: bool(answers), began + seconds - self.seconds):
+            if self.until(lambda: bool(answers), start + seconds - self.seconds):
                 return answers[0]
         self._workspace.exchanges.add(self.seconds, "no answer", name, f"within {seconds:g} s")
         return None
 
     def send_goal(self, action_type: Any, name: str, goal: Any, seconds: float = 5.0) -> Goal:
-        """Send a goal to an action server of the student's; it advances while the programs run on.
+        """Send a goal to a student's action server. The goal makes progress while the programs run.
 
-        Its `accepted` stays None if no server comes within `seconds` of ROS time.
+        The goal's `accepted` stays None if no server appears within `seconds` of ROS time.
         """
-        hold(f"What {name} answered")
+        record_data(f"What {name} answered")
         clients = self._actions.prepare(action_type, name)
-        if not all(client is not None and self._reach(client, seconds) for client in clients):
+        if not all(client is not None and self._wait_for_server(client, seconds) for client in clients):
             return Goal()
         return self._actions.send(action_type, name, goal)
 
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Take messages until `condition` holds, at most `seconds` of real time; return whether it does."""
+        """Take messages until `condition` is true, at most `seconds` of real time. Return whether it is."""
         deadline = time.monotonic() + seconds
         while not condition():
             if time.monotonic() > deadline:
@@ -248,49 +249,49 @@ class Harness(ExitStack, ABC):
         return True
 
     def nodes(self) -> list[str]:
-        """Return the fully qualified names of the student's nodes that are seen now."""
+        """Return the fully qualified names of the student's nodes that are visible now."""
         return self._grader_node.other_nodes()
 
     @abstractmethod
-    def _reach(self, client: Any, seconds: float) -> bool:
-        """Match a new client of the grader's with its server, within `seconds` of ROS time; return whether it is."""
+    def _wait_for_server(self, client: Any, seconds: float) -> bool:
+        """Wait at most `seconds` of ROS time until a client is matched with its server. Return whether it is."""
 
     def _match(self) -> None:
-        """Make the grader's endpoints for the programs' own, and wait until all are matched."""
-        subscribed, published = self._topics()
-        for topic in sorted(subscribed):
+        """Create the grader's endpoints that correspond to the programs', and wait until all are matched."""
+        subscribed_topics, published_topics = self._topics()
+        for topic in sorted(subscribed_topics):
             self._grader_node.make_publisher(topic, self._publishes[topic])
-        for topic in sorted(published):
+        for topic in sorted(published_topics):
             self._grader_node.make_subscription(topic, self._subscribes[topic], self._receiver(topic))
         self._await(self._connected)
-        # An endpoint is seen before the node that it belongs to. One that rclpy did not make belongs to none.
-        self.wait_for(lambda: self._grader_node.knows_nodes_of(subscribed | published), NAME_SECONDS)
+        # An endpoint is discovered before its node. An endpoint that rclpy did not create has no node.
+        self.wait_for(lambda: self._grader_node.knows_nodes_of(subscribed_topics | published_topics), NAME_SECONDS)
 
     def _receiver(self, topic: str) -> OnMessage:
         received = self._received[topic]
         return lambda message, arrived_ns: received.append(ReceivedMessage(self._arrival_seconds(arrived_ns), message))
 
-    def _log_exchange(self, what: str, name: str, message: Any) -> None:
-        self._workspace.exchanges.add(self.seconds, what, name, format_message(message))
+    def _log_exchange(self, kind: str, name: str, message: Any) -> None:
+        self._workspace.exchanges.add(self.seconds, kind, name, format_message(message))
 
     def _arrival_seconds(self, arrived_ns: int) -> float:
-        """Return the ROS time, in seconds since the start, of an arrival at `arrived_ns` since the epoch."""
+        """Return the ROS time, in s since the start, at which a message arrived. `arrived_ns` counts from the epoch."""
         return self.seconds
 
     def _error_of(self, program: Program, error: StudentError) -> StudentError:
-        """Return a program's error, which names the program where several run."""
+        """Return a program's error. If several programs are running, add the program's name."""
         if len(self.processes) == 1:
             return error
         return StudentError(replace(error.diagnosis, sentence=f"{program.executable}: {error.diagnosis.sentence}"))
 
     def _await(self, condition: Callable[[], bool]) -> None:
-        matched = self.wait_for(lambda: self._grader_node.is_impersonated() or condition(), MATCH_SECONDS)
+        is_matched = self.wait_for(lambda: self._grader_node.is_impersonated() or condition(), MATCH_SECONDS)
         if self._grader_node.is_impersonated():
             sentence = (
                 f"Your node is called {NAME}, which is the grader's own name: give it the name that is asked for."
             )
             raise StudentError(Diagnosis(Kind.RESERVED_NAME, sentence))
-        if not matched:
+        if not is_matched:
             sentence = (
                 f"Your node and the grader did not discover each other within {MATCH_SECONDS:.0f} s: keep the "
                 "publishers, subscriptions and services that you make, and make all of them with rclpy."

@@ -1,7 +1,7 @@
-"""Measures how long a busy machine kept programs in real time from running.
+"""Measures how long programs in real time could not run because the machine was busy.
 
 Only the kernel can distinguish a slow program from one that did not get a processor. A stall of the whole machine also
-stalls the grader, and shows in the grader's own clock. What the submission's own processes used is not the machine's.
+stalls the grader, which measures it with its own clock. Time that the submission's own processes used does not count.
 """
 
 from __future__ import annotations
@@ -10,18 +10,19 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
-from autograder.run.sandbox.starvation import look, starved, used
+from autograder.run.sandbox.starvation import measure_use, starved_seconds, used_seconds
 
 
 @contextmanager
 def watch(pids: Iterable[int], seconds: float, report: Callable[[float], None]) -> Iterator[None]:
     """Measure how long processes could not run during this block, which takes `seconds` on an idle machine.
 
-    `report` gets the longest time in s for which others kept one of them, or this one, from running.
+    `report` is called with the longest time in s for which other processes kept one of the processes, or the grader,
+    from running.
     """
     pids = tuple(pids)
-    before, began = look(pids), time.monotonic()
+    before, start = measure_use(pids), time.monotonic()
     yield
-    late = time.monotonic() - began - max(0.0, seconds)
-    after = look(pids)
-    report(max(0.0, late - used(before, after), starved(before, after)))
+    delay = time.monotonic() - start - max(0.0, seconds)
+    after = measure_use(pids)
+    report(max(0.0, delay - used_seconds(before, after), starved_seconds(before, after)))

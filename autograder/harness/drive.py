@@ -1,4 +1,4 @@
-"""Driving: a student's program steers the simulated robot by ROS messages."""
+"""Lets a student's programs steer the simulated robot with ROS messages."""
 
 from __future__ import annotations
 
@@ -21,20 +21,21 @@ from sim.bridge.messages import odom_to_msg, scan_to_msg, twist_to_command
 
 SENSOR_TOPICS = {"/scan": LaserScan, "/odom": Odometry}
 COMMAND_TOPICS = {"/cmd_vel": Twist}
-PHYSICS_NS = 60_000_000  # between two rows of the recording: 18 mm at 0.3 m/s; whole ticks of the simulator's 20 ms
-SCAN_NS = 100_000_000
-SCAN_SECONDS = SCAN_NS / 1e9
+# Simulated time between two rows of the recording: a multiple of the simulator's 20 ms, and 18 mm of travel at 0.3 m/s.
+PHYSICS_NS = 60_000_000
+SCAN_NS = 100_000_000  # simulated time between two scans
+SCAN_SECONDS = SCAN_NS / 1e9  # the same in s
 
-# The time of ROS's log is the machine's, which is another one at each run.
-_LOGGED = re.compile(r"^(\[\w+\]) \[\d+\.\d+\] (?=\[)")
+# ROS's log lines contain the machine's time, which differs from run to run.
+_LOG_TIME = re.compile(r"^(\[\w+\]) \[\d+\.\d+\] (?=\[)")
 
 ScanFilter = Callable[[Scan, float], Scan | None]
-"""Changes a scan before it is sent, or drops it (None); gets the scan and the seconds since the start."""
+"""Called with a scan and the seconds since the start. Returns the scan to send, or None to drop it."""
 
 
 @dataclass(frozen=True)
 class Drive:
-    """A robot's run with the programs' log lines, their messages on /cmd_vel, and all their output."""
+    """A robot's run: the recording (with the programs' log), the messages on /cmd_vel, and the programs' output."""
 
     recording: Recording
     commands: tuple[ReceivedMessage, ...]
@@ -49,50 +50,53 @@ def drive(
     alter_scan: ScanFilter | None = None,
     until: Callable[[State], bool] = lambda state: False,
 ) -> Drive:
-    """Let the program in a harness steer the simulation's one robot.
+    """Let the programs in a harness steer the only robot of a simulation.
 
-    Scans come at 10 Hz, odometry with them. Simulated time starts with the program: a scan's stamp is the program's own
+    Scans and odometry are sent at 10 Hz. Simulated time starts at 0, but the messages are stamped with the programs'
     ROS time.
 
     Args:
-        harness: must have been given `SENSOR_TOPICS` and `COMMAND_TOPICS`.
-        simulation: its world and its robot.
-        seconds: of ROS time, at most.
-        alter_scan: changes scans before they are sent.
-        until: the drive ends in a state for which it returns True.
+        harness: a harness that publishes `SENSOR_TOPICS` and subscribes to `COMMAND_TOPICS`.
+        simulation: the world and the robot.
+        seconds: the maximum duration, in ROS time.
+        alter_scan: may change or drop each scan before it is sent.
+        until: ends the drive at the first state for which it returns True.
 
     Raises:
-        StudentError: the program published a command that no robot can obey.
+        StudentError: the program published a command that no robot can execute.
     """
     state = start(simulation)
     recorder = Recorder(simulation, state)
-    origin = harness.now_ns
+    origin_ns = harness.now_ns
     command: Command | None = None
-    end = round(seconds * 1e9)
-    recorded: dict[Process, int] = {}
+    end_ns = round(seconds * 1e9)
+    recorded_bytes: dict[Process, int] = {}
     if harness.seconds > 0.0:  # earlier output belongs to another run
-        _record_output(harness, 0.0, Recorder(simulation, state), recorded)
-    while state.time_ns < end and not until(state):
-        target = min(state.time_ns + harness.tick_ns, end)
-        state = _move(simulation, state, command, target, recorder)
-        if target % SCAN_NS == 0:
-            _sense(harness, simulation, state, origin, recorder, alter_scan)
-        before = len(harness.messages("/cmd_vel"))
-        harness.step(target - (harness.now_ns - origin))
-        _record_output(harness, target / 1e9, recorder, recorded)
-        fresh = harness.messages("/cmd_vel")[before:]
-        command = _command(fresh[-1]) if fresh else None
+        _record_output(harness, 0.0, Recorder(simulation, state), recorded_bytes)
+    while state.time_ns < end_ns and not until(state):
+        target_ns = min(state.time_ns + harness.tick_ns, end_ns)
+        state = _move(simulation, state, command, target_ns, recorder)
+        if target_ns % SCAN_NS == 0:
+            _sense(harness, simulation, state, origin_ns, recorder, alter_scan)
+        count = len(harness.messages("/cmd_vel"))
+        harness.step(target_ns - (harness.now_ns - origin_ns))
+        _record_output(harness, target_ns / 1e9, recorder, recorded_bytes)
+        new_messages = harness.messages("/cmd_vel")[count:]
+        command = _command(new_messages[-1]) if new_messages else None
     return Drive(recorder.recording(), tuple(harness.messages("/cmd_vel")), harness.output)
 
 
-def _record_output(harness: Harness, seconds: float, recorder: Recorder, recorded: dict[Process, int]) -> None:
-    """Record the lines that the programs have ended since the last time; `recorded` counts their bytes."""
+def _record_output(harness: Harness, seconds: float, recorder: Recorder, recorded_bytes: dict[Process, int]) -> None:
+    """Record the complete lines that the programs have printed since the last call.
+
+    `recorded_bytes` counts the bytes of each program's output that have been recorded, and is updated.
+    """
     for process in harness.processes:
-        text = process.written(recorded.get(process, 0))
+        text = process.output_from(recorded_bytes.get(process, 0))
         end = text.rfind(b"\n") + 1
-        recorded[process] = recorded.get(process, 0) + end
+        recorded_bytes[process] = recorded_bytes.get(process, 0) + end
         for line in clean(text[:end].decode("utf-8", errors="replace")).split("\n"):
-            recorder.log.add(seconds, _LOGGED.sub(r"\1 ", line))
+            recorder.log.add(seconds, _LOG_TIME.sub(r"\1 ", line))
 
 
 def _command(received: ReceivedMessage) -> Command:
@@ -104,7 +108,7 @@ def _command(received: ReceivedMessage) -> Command:
 
 
 def _move(simulation: Simulation, state: State, command: Command | None, target_ns: int, recorder: Recorder) -> State:
-    """Step the physics to `target_ns`. A command is given once; the robot's own watchdog keeps or drops it."""
+    """Step the physics to `target_ns`. Only the first step gets the command; the robot's watchdog keeps or drops it."""
     while state.time_ns < target_ns:
         dt_ns = min(PHYSICS_NS, target_ns - state.time_ns)
         state = step(simulation, state, command, dt_ns / 1e9)
@@ -117,7 +121,7 @@ def _sense(
     harness: Harness,
     simulation: Simulation,
     state: State,
-    origin: int,
+    origin_ns: int,
     recorder: Recorder,
     alter_scan: ScanFilter | None,
 ) -> None:
@@ -127,10 +131,10 @@ def _sense(
     recorder.scan(scan)
     if scan is not None:
         message = scan_to_msg(scan)
-        _shift(message.header.stamp, origin)
+        _shift(message.header.stamp, origin_ns)
         harness.publish("/scan", message)
     odometry = odom_to_msg(state.robots[0], state.time_ns)
-    _shift(odometry.header.stamp, origin)
+    _shift(odometry.header.stamp, origin_ns)
     harness.publish("/odom", odometry)
 
 

@@ -16,7 +16,7 @@ from autograder.harness.grader_node import requested_qos
 
 @dataclass(frozen=True)
 class ReceivedMessage:
-    """A message of the student's program, and its arrival in s of ROS time since the program started."""
+    """A message from the student's program, and the ROS time of its arrival in s since the program started."""
 
     seconds: float
     message: Any
@@ -30,9 +30,9 @@ class Goal:
         id: its UUID.
         accepted: whether the server accepted it; None while it has not answered.
         feedback: its feedback messages so far.
-        status: of `action_msgs/GoalStatus`, as last received.
+        status: the last status that was received, a constant of `action_msgs/GoalStatus`.
         result: the result message once the goal has ended, None before.
-        cancelled: whether the server agreed to cancel it; None while it was not asked or has not answered.
+        cancelled: whether the server agreed to cancel it; None if it was not asked or has not answered.
     """
 
     id: Any = None
@@ -44,22 +44,22 @@ class Goal:
     _cancel: Callable[[], None] = lambda: None
 
     def cancel(self) -> None:
-        """Ask the server to cancel the goal; `cancelled` is its answer, once the program has run on."""
+        """Ask the server to cancel the goal. Once the programs have run, `cancelled` is its answer."""
         self._cancel()
 
 
 class Actions:
-    """The action clients of a harness, made of plain services and subscriptions."""
+    """The action clients of a harness, which consist of plain service clients and subscriptions."""
 
-    def __init__(self, grader_node: Any, when: Callable[[int], float]) -> None:
+    def __init__(self, grader_node: Any, arrival_seconds: Callable[[int], float]) -> None:
         self._grader_node = grader_node
-        self._arrival_seconds = when
+        self._arrival_seconds = arrival_seconds
         self._goals: dict[bytes, Goal] = {}
         self._names: set[str] = set()
         self._numbers = itertools.count(1)
 
     def prepare(self, kind: Any, name: str) -> list[Any]:
-        """Make the subscriptions and clients for an action server; return the clients, which have to be matched."""
+        """Create the subscriptions and clients for an action server. Return the clients, which have to be matched."""
         if name not in self._names:
             self._names.add(name)
             feedback, status = f"{name}/_action/feedback", f"{name}/_action/status"
@@ -73,37 +73,44 @@ class Actions:
             "cancel_goal": kind.Impl.CancelGoalService,
             "get_result": kind.Impl.GetResultService,
         }
-        return [self._grader_node.client(of, f"{name}/_action/{service}") for service, of in services.items()]
+        return [
+            self._grader_node.client(service_type, f"{name}/_action/{service}")
+            for service, service_type in services.items()
+        ]
 
     def send(self, kind: Any, name: str, goal: Any) -> Goal:
-        """Send a goal to an action that was prepared, and ask for its result once it is accepted."""
-        sent = Goal(GoalInfo().goal_id)
-        # It is counted and not drawn at random, so every run is the same.
-        sent.id.uuid = list(next(self._numbers).to_bytes(16, "big"))
-        self._goals[bytes(sent.id.uuid)] = sent
-        request = kind.Impl.SendGoalService.Request(goal_id=sent.id, goal=goal)
+        """Send a goal to a server for which `prepare` was called. Once it is accepted, ask for its result."""
+        sent_goal = Goal(GoalInfo().goal_id)
+        # A counter instead of a random number, so that all runs are the same.
+        sent_goal.id.uuid = list(next(self._numbers).to_bytes(16, "big"))
+        self._goals[bytes(sent_goal.id.uuid)] = sent_goal
+        request = kind.Impl.SendGoalService.Request(goal_id=sent_goal.id, goal=goal)
 
-        def ended(response: Any) -> None:
-            sent.status, sent.result = response.status, response.result
+        def on_result(response: Any) -> None:
+            sent_goal.status, sent_goal.result = response.status, response.result
 
-        def answered(response: Any) -> None:
-            sent.accepted = response.accepted
+        def on_response(response: Any) -> None:
+            sent_goal.accepted = response.accepted
             if response.accepted:
-                sent.status = sent.status or GoalStatus.STATUS_ACCEPTED
-                asked = kind.Impl.GetResultService.Request(goal_id=sent.id)
-                self._grader_node.ask(kind.Impl.GetResultService, f"{name}/_action/get_result", asked, ended)
+                sent_goal.status = sent_goal.status or GoalStatus.STATUS_ACCEPTED
+                result_request = kind.Impl.GetResultService.Request(goal_id=sent_goal.id)
+                self._grader_node.ask(
+                    kind.Impl.GetResultService, f"{name}/_action/get_result", result_request, on_result
+                )
 
-        def cancelled(response: Any) -> None:
-            sent.cancelled = any(info.goal_id == sent.id for info in response.goals_canceling)
+        def on_cancel_response(response: Any) -> None:
+            sent_goal.cancelled = any(info.goal_id == sent_goal.id for info in response.goals_canceling)
 
         def cancel() -> None:
-            asked = CancelGoal.Request()
-            asked.goal_info.goal_id = sent.id
-            self._grader_node.ask(kind.Impl.CancelGoalService, f"{name}/_action/cancel_goal", asked, cancelled)
+            cancel_request = CancelGoal.Request()
+            cancel_request.goal_info.goal_id = sent_goal.id
+            self._grader_node.ask(
+                kind.Impl.CancelGoalService, f"{name}/_action/cancel_goal", cancel_request, on_cancel_response
+            )
 
-        sent._cancel = cancel
-        self._grader_node.ask(kind.Impl.SendGoalService, f"{name}/_action/send_goal", request, answered)
-        return sent
+        sent_goal._cancel = cancel
+        self._grader_node.ask(kind.Impl.SendGoalService, f"{name}/_action/send_goal", request, on_response)
+        return sent_goal
 
     def _on_feedback(self, topic: str, message: Any, arrived_ns: int) -> None:
         goal = self._goals.get(bytes(message.goal_id.uuid))

@@ -1,7 +1,7 @@
 """The grader's node: its publishers, subscriptions and clients.
 
-It counts the messages that it has sent and taken on each channel, as the programs do (see `lockstep_host`). So a
-harness in lockstep knows when it has taken every message.
+Like the programs (see `lockstep_host`), it counts the messages that it has sent and taken on each channel. This is how
+a harness in lockstep knows when it has taken every message.
 """
 
 from __future__ import annotations
@@ -21,35 +21,35 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
 from autograder.harness.inflow import Inflow
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from autograder.run.lockstep.lockstep_host import channels
 
-DEPTH = 1000
+DEPTH = 1000  # length of the queues of its publishers and subscriptions
 NAME = "grader"
-UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"  # rmw_dds_common's, for an endpoint before its node is known
+UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"  # what rmw_dds_common calls the node of an endpoint until the node is discovered
 
 OnMessage = Callable[[Any, int], None]
 """Called with a message and the time at which it arrived, in ns since the epoch."""
 
 OnExchange = Callable[[str, str, Any], None]
-"""Called with what happened, as in `exchanges.Exchange`, the name of the service or topic, and the message."""
+"""Called with the kind of event, as in `exchanges.Exchange`, the name of the service or topic, and the message."""
 
 
 @dataclass(eq=False)
 class GraderReader:
-    """A subscription or client of the grader's: something that takes messages."""
+    """A subscription or client of the grader, which takes messages."""
 
-    kind: str  # subscription or client
+    kind: str  # "subscription" or "client"
     channels: tuple[str, ...]  # the channels that it receives from
     entity: Any  # rclpy's object
     take: Callable[[], bool]  # takes and handles one message; False if none has arrived
-    count: int = 0  # how many it has taken
-    expected: int = 0  # how many were sent to it, as far as is known
-    transient_local: bool = False  # whether publishers send it messages that they keep for late subscriptions
-    new: bool = True  # whether that is still to be counted
+    count: int = 0  # number of messages that it has taken
+    expected: int = 0  # number of messages that were sent to it, as far as is known
+    transient_local: bool = False  # whether it receives messages that publishers keep for late subscriptions
+    is_new: bool = True  # whether such messages are not yet included in `expected`
 
-    def empty(self) -> None:
-        """Take all that has arrived, but of a program that sends faster than this takes only a queue's length."""
+    def drain(self) -> None:
+        """Take the messages that have arrived, at most a full queue: a program may send faster than they are taken."""
         for _ in range(DEPTH):
             if not self.take():
                 return
@@ -60,28 +60,28 @@ class GraderNode:
     """The grader's node in one DDS domain.
 
     Attributes:
-        publishers: by topic.
-        written: the publishers' channels, by topic.
-        readers: all that takes messages.
-        sent: messages by channel, since the programs were last told.
-        on_exchange: called at each request, response and feedback message.
+        publishers: the publishers, by topic.
+        publisher_channels: the channels of the publishers, by topic.
+        readers: the subscriptions and clients.
+        sent: the number of messages sent on each channel since the programs were last informed.
+        on_exchange: called for each request, response and feedback message.
     """
 
-    def __init__(self, domain: int, on_exchange: OnExchange = lambda what, name, message: None) -> None:
+    def __init__(self, domain: int, on_exchange: OnExchange = lambda kind, name, message: None) -> None:
         self.on_exchange = on_exchange
         self.context = Context()
-        with announcing_often():
+        with fast_discovery():
             rclpy.init(args=[], context=self.context, domain_id=domain)
             self.node = Node(NAME, context=self.context, enable_rosout=False, start_parameter_services=False)
         self.publishers: dict[str, Any] = {}
-        self.written: dict[str, str] = {}
+        self.publisher_channels: dict[str, str] = {}
         self.readers: list[GraderReader] = []
         self.sent: Counter[str] = Counter()
         self._clients: dict[tuple[str, str], Any] = {}
-        self._waiting: dict[tuple[int, int], Callable[[Any], None]] = {}  # by client and sequence number
+        self._callbacks: dict[tuple[int, int], Callable[[Any], None]] = {}  # by client and sequence number
         self._unused_guard = GuardCondition(callback=None, callback_group=None, context=self.context)
         self._inflow = Inflow()
-        self._prefix = ""  # of this process's GUIDs
+        self._prefix = ""  # the prefix of this process's GUIDs
 
     def close(self) -> None:
         """Leave the domain."""
@@ -89,34 +89,34 @@ class GraderNode:
         self.context.try_shutdown()
 
     def make_publisher(self, topic: str, kind: Any) -> None:
-        """Create a publisher that fits every visible subscription, unless one exists or the types differ."""
+        """Create a publisher compatible with all visible subscriptions, unless it exists or the types differ."""
         peers = self.subscriptions_of(topic)
         if topic in self.publishers or not _have_type(kind, peers):
             return
         qos = offered_qos(peers)
         self.publishers[topic] = self.node.create_publisher(kind, topic, qos)
-        self.written[topic] = channels.publisher_channel(topic, kind, qos)
+        self.publisher_channels[topic] = channels.publisher_channel(topic, kind, qos)
 
     def make_subscription(self, topic: str, kind: Any, receive: OnMessage) -> None:
-        """Create a subscription that fits every visible publisher, unless one exists or the types differ."""
+        """Create a subscription compatible with all visible publishers, unless it exists or the types differ."""
         peers = self.publishers_of(topic)
-        subscribed = (reader.entity.topic_name for reader in self.readers if reader.kind == "subscription")
-        if topic not in subscribed and _have_type(kind, peers):
+        subscribed_topics = (reader.entity.topic_name for reader in self.readers if reader.kind == "subscription")
+        if topic not in subscribed_topics and _have_type(kind, peers):
             self.subscribe(topic, kind, receive, requested_qos(peers))
 
     def subscribe(self, topic: str, kind: Any, receive: OnMessage, qos: QoSProfile) -> None:
-        """Make a subscription with a profile; `receive` is called with each message."""
+        """Create a subscription with a QoS profile. `receive` is called with each message."""
         subscription = self.node.create_subscription(kind, topic, receive, qos)
 
         def take() -> bool:
-            taken = subscription.handle.take_message(kind, True)
-            if taken is None:
+            received = subscription.handle.take_message(kind, True)
+            if received is None:
                 return False
-            self._inflow.add(topic, len(taken[0]))
+            self._inflow.add(topic, len(received[0]))
             with suppress(rclpy_implementation.RMWError, TypeError):
-                message = deserialize_message(taken[0], kind)
-                if message is not None:  # None, or an error: the bytes are not a message of the student's type
-                    receive(message, taken[1]["received_timestamp"])
+                message = deserialize_message(received[0], kind)
+                if message is not None:  # None or an error if the bytes are not a message of this type
+                    receive(message, received[1]["received_timestamp"])
             return True
 
         transient_local = qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
@@ -131,14 +131,14 @@ class GraderNode:
         )
 
     def publish(self, topic: str, message: Any) -> None:
-        """Publish a message on a topic that has a publisher."""
+        """Publish a message on a topic for which a publisher was created."""
         self.publishers[topic].publish(message)
-        self.sent[self.written[topic]] += 1
+        self.sent[self.publisher_channels[topic]] += 1
 
     def client(self, kind: Any, name: str) -> Any:
-        """Return the client of a service, made when it is first asked for.
+        """Return the client of a service. It is created on first use.
 
-        None if this process knows the service by another type: DDS allows one of each name in a process.
+        Return None if this process already uses the service with another type: DDS allows only one type per name.
         """
         channel = channels.request(name, kind)
         if (name, channel) not in self._clients:
@@ -148,29 +148,29 @@ class GraderNode:
                 return None
 
             def take() -> bool:
-                taken = client.handle.take_response(kind.Response)
-                if taken is None or taken[0] is None:
+                received = client.handle.take_response(kind.Response)
+                if received is None or received[0] is None:
                     return False
-                then = self._waiting.pop((id(client), taken[0].request_id.sequence_number), None)
-                if then is not None and taken[1] is not None:
-                    then(taken[1])
+                callback = self._callbacks.pop((id(client), received[0].request_id.sequence_number), None)
+                if callback is not None and received[1] is not None:
+                    callback(received[1])
                 return True
 
             self._prefix = self._prefix or channels.own_prefix(self.node)
             self.readers.append(GraderReader("client", (channels.response(name, kind, self._prefix),), client, take))
         return self._clients[(name, channel)]
 
-    def ask(self, kind: Any, name: str, request: Any, then: Callable[[Any], None]) -> None:
-        """Send a request to a service that has a client. `then` is called with the response."""
+    def ask(self, kind: Any, name: str, request: Any, on_response: Callable[[Any], None]) -> None:
+        """Send a request to a service. `on_response` is called with the response."""
         client = self.client(kind, name)
         self.on_exchange("asked", name, request)
         sequence = client.handle.send_request(request)
 
-        def answered(response: Any) -> None:
+        def deliver(response: Any) -> None:
             self.on_exchange("answered", name, response)
-            then(response)
+            on_response(response)
 
-        self._waiting[(id(client), sequence)] = answered
+        self._callbacks[(id(client), sequence)] = deliver
         self.sent[channels.request(name, kind)] += 1
 
     def clients(self) -> list[tuple[str, Any]]:
@@ -178,10 +178,10 @@ class GraderNode:
         return [(channel, client) for (_, channel), client in self._clients.items()]
 
     def take_expected(self) -> bool:
-        """Take the messages that are expected and have arrived; return whether none is missing."""
+        """Take expected messages that have arrived. Return whether none is missing."""
         for reader in self.readers:
             if reader.count < reader.expected:
-                reader.empty()
+                reader.drain()
         return all(reader.count >= reader.expected for reader in self.readers)
 
     def subscriptions_of(self, topic: str) -> list[Any]:
@@ -198,7 +198,7 @@ class GraderNode:
         return all(peer.node_name != UNKNOWN_NODE for peer in peers)
 
     def other_nodes(self) -> list[str]:
-        """Return the fully qualified names of the other nodes that are seen now."""
+        """Return the fully qualified names of the other nodes that are visible now."""
         nodes = self.node.get_node_names_and_namespaces()
         return sorted(f"{space.rstrip('/')}/{name}" for name, space in nodes if name != NAME)
 
@@ -223,7 +223,7 @@ class GraderNode:
             add[reader.kind](reader.entity.handle)
         wait_set.wait(int(timeout * 1e9))
         for reader in readers:
-            reader.empty()
+            reader.drain()
 
 
 def _have_type(kind: Any, peers: list[Any]) -> bool:
@@ -231,21 +231,21 @@ def _have_type(kind: Any, peers: list[Any]) -> bool:
 
 
 def offered_qos(peers: list[Any]) -> QoSProfile:
-    """Return a publisher's profile that is compatible with every subscription, whatever it requests."""
-    durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in peers)
+    """Return a QoS profile for a publisher that is compatible with all these subscriptions."""
+    is_durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in peers)
     return QoSProfile(
         depth=DEPTH,
         reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_durable else DurabilityPolicy.VOLATILE,
     )
 
 
 def requested_qos(peers: list[Any]) -> QoSProfile:
-    """Return a subscription's profile that is compatible with each publisher, however little it offers."""
-    reliable = all(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in peers)
-    durable = bool(peers) and all(p.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for p in peers)
+    """Return a QoS profile for a subscription that is compatible with all these publishers."""
+    is_reliable = all(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in peers)
+    is_durable = bool(peers) and all(p.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for p in peers)
     return QoSProfile(
         depth=DEPTH,
-        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,
+        reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_durable else DurabilityPolicy.VOLATILE,
     )

@@ -1,4 +1,4 @@
-"""Bounds the messages that a harness takes from a student's programs: kept ones would fill the grader's memory."""
+"""Limits the messages that a harness takes from a student's programs, because they stay in the grader's memory."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections import Counter
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
-from autograder.run.sandbox.limits import MIB, RECEIVED, Received
+from autograder.run.sandbox.limits import MIB, RECEIVED_MESSAGES, MessageLimits
 
 
 class Inflow:
     """Counts the messages of all topics of one harness, and their bytes on the wire."""
 
-    def __init__(self, limits: Received = RECEIVED) -> None:
+    def __init__(self, limits: MessageLimits = RECEIVED_MESSAGES) -> None:
         self._limits = limits
         self._messages: Counter[str] = Counter()  # by topic
         self._bytes: Counter[str] = Counter()
@@ -21,7 +21,7 @@ class Inflow:
         """Count a message of `size` bytes, before it is parsed.
 
         Raises:
-            StudentError: it is one too many, or too large; the sentence names the topic with the greatest part.
+            StudentError: there are too many messages or bytes. The error names the topic with the largest share.
         """
         self._messages[topic] += 1
         self._bytes[topic] += size

@@ -28,20 +28,20 @@ from autograder.run.sandbox import Mount, Process, Sandbox, procfs
 from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.limits import LAUNCH
 from autograder.run.workspace import Workspace
-from autograder.submission.reading import hold, reading
+from autograder.submission.reading import reading, record_data
 
 RUNNER = Path(__file__).with_name("launch_runner.py")
-ANSWER_SECONDS = 10.0  # real time for a parameter service, which answers at once when its node spins
-_POLL_SECONDS = 0.05  # between two looks at a condition while nothing arrives
+ANSWER_SECONDS = 10.0  # maximum real time until a parameter service answers; if its node spins, it answers at once
+_POLL_SECONDS = 0.05  # between two checks of a condition while no message arrives
 _PROGRAM = re.compile(r"/lib/(?P<package>[^/]+)/(?P<name>[^/]+)$")
-MAX_STATUS = 64  # bytes of a launch's exit status, which its programs can write to as well
+MAX_STATUS = 64  # maximum bytes of the line with a launch's exit status; the launched programs can write to it as well
 _STATUS = re.compile(rb"-?[0-9]{1,9}\n")
-_NUMBERS = itertools.count()
+_DOMAIN_OFFSETS = itertools.count()
 
 
 @dataclass(frozen=True)
 class RunningProgram:
-    """A running executable of a package, as the system sees it."""
+    """A process that runs an executable of a package."""
 
     pid: int
     package: str
@@ -49,7 +49,7 @@ class RunningProgram:
 
     @property
     def start_seconds(self) -> float | None:
-        """When it started, in s since the boot, up to `LaunchHarness.start_resolution` early; None if it has ended."""
+        """When it started, in s since boot, up to `LaunchHarness.start_resolution` too early; None if it has ended."""
         return procfs.start_seconds(self.pid)
 
     @property
@@ -60,34 +60,40 @@ class RunningProgram:
 
 @dataclass(frozen=True)
 class Stop:
-    """How a launch ended after Ctrl-C: its exit status, None if it still ran, and the commands that it left running."""
+    """The outcome of Ctrl-C."""
 
-    status: int | None
-    left: tuple[str, ...]
+    status: int | None  # the exit status of the launch; None if it is still running
+    left: tuple[str, ...]  # the commands that the launch left running
 
 
 def start(arguments: Sequence[str], spec: Sandbox, status: int | None = None) -> Process:
-    """Start `ros2 ARGUMENTS...`, the real one if it is installed, otherwise the stand-in.
+    """Start `ros2 ARGUMENTS...`: the real `ros2` if it is installed, otherwise the stand-in.
 
     Args:
-        arguments: of `ros2`.
-        spec: from `sandbox`.
-        status: a descriptor that gets the exit status, as a line; the process then lives on after `ros2`.
+        arguments: the arguments of `ros2`.
+        spec: the sandbox, as `sandbox` returns it.
+        status: a file descriptor to which the exit status is written as a line; the process then outlives `ros2`.
     """
     command = [sys.executable, str(RUNNER), "-" if status is None else str(status), *arguments]
     return launch(command, spec, pass_fds=() if status is None else (status,), profile="launch")
 
 
 def sandbox(workspace: Workspace) -> Sandbox:
-    """Describe the sandbox of a `ros2` command: that of a node, which also sees the command."""
+    """Return the sandbox of a `ros2` command: like that of a node, but the `autograder` package can be imported."""
     package = Path(autograder.__file__).parent
-    plain = workspace.sandbox(LAUNCH)
-    path = os.pathsep.join(part for part in (plain.environment.get("PYTHONPATH", ""), str(package.parent)) if part)
-    return replace(plain, mounts=(*plain.mounts, Mount(package)), environment={**plain.environment, "PYTHONPATH": path})
+    node_sandbox = workspace.sandbox(LAUNCH)
+    path = os.pathsep.join(
+        part for part in (node_sandbox.environment.get("PYTHONPATH", ""), str(package.parent)) if part
+    )
+    return replace(
+        node_sandbox,
+        mounts=(*node_sandbox.mounts, Mount(package)),
+        environment={**node_sandbox.environment, "PYTHONPATH": path},
+    )
 
 
 class LaunchHarness(contextlib.ExitStack):
-    """A running `ros2 launch` and the grader's node, which talks with its nodes over DDS. A context manager.
+    """A running `ros2 launch` and the grader's node that talks with the launched nodes over DDS; a context manager.
 
     For example::
 
@@ -103,14 +109,14 @@ class LaunchHarness(contextlib.ExitStack):
     Args:
         workspace: the student's built workspace.
         package: the package with the launch file.
-        file: its name.
+        file: the launch file's name.
         arguments: launch arguments by name.
         subscribes: topics that the grader subscribes to from the start, with their types.
-        environment: variables that are set for the launch.
+        environment: environment variables that are set for the launch.
 
     Attributes:
-        another: makes a new harness for the same launch, not yet entered.
-        start_resolution: s by which `RunningProgram.start_seconds` may be early.
+        another: creates a new harness for the same launch, not yet entered.
+        start_resolution: how many seconds too early `RunningProgram.start_seconds` may be.
     """
 
     start_resolution = procfs.TICK
@@ -129,11 +135,11 @@ class LaunchHarness(contextlib.ExitStack):
         self.another = partial(
             LaunchHarness, workspace, package, file, arguments, subscribes=subscribes, environment=environment
         )
-        self._domain = Domain(workspace.domain + next(_NUMBERS))
-        plain = sandbox(replace(workspace, domain=self._domain.number))
-        self._sandbox = replace(plain, environment={**plain.environment, **(environment or {})})
+        self._domain = Domain(workspace.domain + next(_DOMAIN_OFFSETS))
+        node_sandbox = sandbox(replace(workspace, domain=self._domain.number))
+        self._sandbox = replace(node_sandbox, environment={**node_sandbox.environment, **(environment or {})})
         assignments = [f"{name}:={value}" for name, value in (arguments or {}).items()]
-        # Without a terminal, it is the launch's own task to pass Ctrl-C on.
+        # Without a terminal, the launch itself has to pass Ctrl-C on.
         self._command = ("launch", "--noninteractive", package, file, *assignments)
         self._subscribes = dict(subscribes or {})
         self._received: dict[str, list[Any]] = {topic: [] for topic in self._subscribes}
@@ -145,31 +151,31 @@ class LaunchHarness(contextlib.ExitStack):
         self.callback(self._grader_node.close)
         profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         for topic, kind in self._subscribes.items():
-            self._grader_node.subscribe(topic, kind, _keep_in(self._received[topic]), profile)
-        hold("What the launch started")
-        self._pipe, theirs = os.pipe()
-        self.callback(os.close, self._pipe)
-        os.set_blocking(self._pipe, False)
+            self._grader_node.subscribe(topic, kind, _append_to(self._received[topic]), profile)
+        record_data("What the launch started")
+        self._status_pipe, write_end = os.pipe()
+        self.callback(os.close, self._status_pipe)
+        os.set_blocking(self._status_pipe, False)
         try:
-            self.process = self.enter_context(start(self._command, self._sandbox, theirs))
+            self.process = self.enter_context(start(self._command, self._sandbox, write_end))
         except BaseException:
             self.close()
             raise
         finally:
-            os.close(theirs)
+            os.close(write_end)
         return self
 
     @property
     def output(self) -> str:
         """The output of the launch and its processes so far."""
-        hold("What the launch printed")
+        record_data("What the launch printed")
         return self.process.output
 
     @property
     def status(self) -> int | None:
         """The exit status of `ros2 launch`, negative for a signal; None while it runs."""
         with contextlib.suppress(BlockingIOError):
-            self._status_text += os.read(self._pipe, MAX_STATUS - len(self._status_text))
+            self._status_text += os.read(self._status_pipe, MAX_STATUS - len(self._status_text))
         if not (self._status_text.endswith(b"\n") or len(self._status_text) == MAX_STATUS):
             return None
         with reading("The exit status of the launch", advice="Do not write to descriptors that you did not open."):
@@ -178,23 +184,23 @@ class LaunchHarness(contextlib.ExitStack):
             return int(self._status_text)
 
     def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Take messages until `condition` holds, at most `seconds` of real time; return whether it does.
+        """Take messages until `condition` is true, at most `seconds` of real time. Return whether it is.
 
-        It does not wait for a launch that has ended. It raises a StudentError if the launch went over a limit.
+        If the launch has ended, return at once. Raise a StudentError if it exceeded a limit.
         """
         deadline = time.monotonic() + seconds
         while True:
-            over = time.monotonic() > deadline or self.status is not None
-            self._grader_node.spin(0.0 if over else _POLL_SECONDS)
+            is_over = time.monotonic() > deadline or self.status is not None
+            self._grader_node.spin(0.0 if is_over else _POLL_SECONDS)
             if condition():
                 return True
             if self.process.exit_reason is not None:
                 raise StudentError(diagnose_exit(self.process))
-            if over:
+            if is_over:
                 return False
 
     def nodes(self) -> list[str]:
-        """Return the full names of the nodes that are seen now; a name that several nodes have comes as often."""
+        """Return the full names of the nodes that are visible now, repeated if several nodes have the same name."""
         return [name for name in self._grader_node.other_nodes() if "/_" not in name]
 
     def publishers(self, topic: str) -> list[str]:
@@ -206,22 +212,22 @@ class LaunchHarness(contextlib.ExitStack):
         return _names_of(self._grader_node.subscriptions_of(topic))
 
     def messages(self, topic: str) -> list[Any]:
-        """Return the messages that came on a topic of `subscribes`."""
-        hold(f"What was sent on {topic}")
+        """Return the messages that were received on a topic of `subscribes`."""
+        record_data(f"What was sent on {topic}")
         return self._received[topic]
 
     def parameters(self, node: str, names: Collection[str], seconds: float = ANSWER_SECONDS) -> dict[str, Any] | None:
-        """Ask a node, by its full name, for parameters; each answer has `seconds` of real time.
+        """Ask the node with this full name for parameters. Wait at most `seconds` of real time for each answer.
 
         Returns:
-            Values by name, None for one that the node has not declared; or None if it does not answer.
+            The values by name, with None for undeclared parameters; or None if the node does not answer.
         """
         values: dict[str, Any] = {}
         service, answers = f"{node}/get_parameters", list[Any]()
         if not self.wait_for(self._grader_node.client(GetParameters, service).service_is_ready, seconds):
             return None
         for name in names:
-            # One request each: a node that lacks one of the parameters answers with no value at all.
+            # One request per parameter: if one of several is not declared, a node returns none of their values.
             self._grader_node.ask(GetParameters, service, GetParameters.Request(names=[name]), answers.append)
             if not self.wait_for(lambda: len(answers) > len(values), seconds):
                 return None
@@ -231,11 +237,13 @@ class LaunchHarness(contextlib.ExitStack):
     def programs(self) -> list[RunningProgram]:
         """Return the running executables of packages, in the order of their process ids.
 
-        A child that a program has forked, and that still has its name, does not count as another program.
+        A child that a program has forked does not count as another program while it has the program's name.
         """
         processes = self._processes()
-        known = {(program.pid, program.package, program.name) for program in processes}
-        return [each for each in processes if (procfs.parent(each.pid), each.package, each.name) not in known]
+        keys = {(program.pid, program.package, program.name) for program in processes}
+        return [
+            process for process in processes if (procfs.parent(process.pid), process.package, process.name) not in keys
+        ]
 
     def _processes(self) -> list[RunningProgram]:
         """Return the processes that run executables of packages, in the order of their process ids."""
@@ -249,10 +257,10 @@ class LaunchHarness(contextlib.ExitStack):
     def kill(self, name: str, number: signal.Signals = signal.SIGKILL) -> int:
         """Send a signal to every program called `name`, including its forks, and return the number of programs."""
         count = sum(program.name == name for program in self.programs())
-        for each in self._processes():
-            if each.name == name:
+        for process in self._processes():
+            if process.name == name:
                 with contextlib.suppress(ProcessLookupError):
-                    os.kill(each.pid, number)
+                    os.kill(process.pid, number)
         return count
 
     def interrupt(self, seconds: float) -> Stop:
@@ -264,13 +272,13 @@ class LaunchHarness(contextlib.ExitStack):
         return Stop(self.status, self.left())
 
     def left(self) -> tuple[str, ...]:
-        """Return the commands that are still running now that the launch has ended."""
+        """Return the commands that the launch left running; none while the launch itself is running."""
         runner = self.process.innermost()
         pids = [pid for pid in procfs.measure(runner).pids if pid != runner and _command_of(pid)]
         return tuple(" ".join(_command_of(pid)) for pid in pids) if self.status is not None else ()
 
 
-def _keep_in(received: list[Any]) -> OnMessage:
+def _append_to(received: list[Any]) -> OnMessage:
     return lambda message, arrived_ns: received.append(message)
 
 

@@ -1,9 +1,9 @@
-"""Runs `ros2` in a sandbox, in a process that outlives it and observes the processes that it leaves running.
+"""Runs `ros2` in a sandbox, as the child of a process that outlives it and adopts the processes that it leaves running.
 
-    python launch_runner.py DESCRIPTOR WORDS-OF-ROS2...
+    python launch_runner.py DESCRIPTOR ARGUMENTS-OF-ROS2...
 
 When `ros2` has ended, its exit status is written to DESCRIPTOR, and this process waits to be killed. `ros2` is its
-first child; whatever loses its parent becomes another one. If DESCRIPTOR is a dash, this process becomes `ros2` itself.
+first child. If DESCRIPTOR is a dash, this process becomes `ros2`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def report_exit(child: int, descriptor: int) -> NoReturn:
 
 
 def main() -> None:
-    """Run `ros2` in a child whose end is reported, or in this process."""
+    """Run `ros2` in a child, and report its exit status, or run it in this process."""
     descriptor = sys.argv.pop(1)
     if descriptor != "-":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
@@ -37,7 +37,7 @@ def main() -> None:
         os.close(int(descriptor))
     if fork_children := globals().get("fork_children"):  # set by the fork server
         fork_children()
-    del sys.path[0]  # this file's folder is none of the launch's business
+    del sys.path[0]  # the launch must not import from this file's folder
     runpy.run_module("autograder.ros.ros2", run_name="__main__", alter_sys=True)
 
 

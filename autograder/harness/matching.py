@@ -1,4 +1,4 @@
-"""Matching: whether every endpoint in a harness sees all its peers. No message is lost from then on."""
+"""Tells whether every endpoint in a harness has discovered all its peers. No message is lost from then on."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from autograder.run.lockstep.protocol import Description
 
 
 def connected(programs: Sequence[Description], grader_node: GraderNode) -> bool:
-    """Return whether the endpoints of the programs and of the grader's node see their peers, as far as known."""
+    """Return whether the known endpoints of the programs and of the grader's node have discovered their peers."""
     readers = [reader.channels for reader in grader_node.readers if reader.kind == "subscription"]
     readers = [*(names for program in programs for names, _ in program.readers), *readers]
-    writers = [*(name for program in programs for name, _ in program.writers), *grader_node.written.values()]
-    served = {name for program in programs for name in program.servers}
+    writers = [*(name for program in programs for name, _ in program.writers), *grader_node.publisher_channels.values()]
+    served_channels = {name for program in programs for name in program.servers}
 
     def subscriptions(channel: str) -> int:
         return sum(channel in names for names in readers)
@@ -22,11 +22,11 @@ def connected(programs: Sequence[Description], grader_node: GraderNode) -> bool:
         return sum(channel in names for channel in writers)
 
     return (
-        all(seen >= subscriptions(name) for program in programs for name, seen in program.writers)
-        and all(seen is None or seen >= publishers(names) for program in programs for names, seen in program.readers)
-        and all(ready or name not in served for program in programs for name, ready in program.clients)
+        all(count >= subscriptions(name) for program in programs for name, count in program.writers)
+        and all(count is None or count >= publishers(names) for program in programs for names, count in program.readers)
+        and all(ready or name not in served_channels for program in programs for name, ready in program.clients)
         and all(
-            publisher.get_subscription_count() >= subscriptions(grader_node.written[topic])
+            publisher.get_subscription_count() >= subscriptions(grader_node.publisher_channels[topic])
             for topic, publisher in grader_node.publishers.items()
         )
         and all(
@@ -34,5 +34,7 @@ def connected(programs: Sequence[Description], grader_node: GraderNode) -> bool:
             for reader in grader_node.readers
             if reader.kind == "subscription"
         )
-        and all(client.service_is_ready() or channel not in served for channel, client in grader_node.clients())
+        and all(
+            client.service_is_ready() or channel not in served_channels for channel, client in grader_node.clients()
+        )
     )

@@ -1,4 +1,4 @@
-"""The value of a parameter, as a node's services answer it. A node may answer anything."""
+"""Reads the value of a parameter from a node's answer, which may contain anything."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from rclpy.parameter import parameter_value_to_python
 
 from autograder.submission.reading import reading
 
-KNOWN = range(ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_STRING_ARRAY + 1)
+KNOWN_TYPES = range(ParameterType.PARAMETER_NOT_SET, ParameterType.PARAMETER_STRING_ARRAY + 1)
 
 
-def value_of(answered: ParameterValue, name: str) -> Any:
-    """Return the value of the parameter `name` that a node answered; None for one that is not set.
+def value_of(answer: ParameterValue, name: str) -> Any:
+    """Return the value of the parameter `name` from a node's answer, or None if it is not set.
 
     Raises:
         StudentError: the answer has a type that ROS does not know.
     """
     with reading(f"What your node answered about its parameter {name}"):
-        if answered.type not in KNOWN:
-            raise ValueError(f"{answered.type} is not a type of a parameter")
-        return parameter_value_to_python(answered)
+        if answer.type not in KNOWN_TYPES:
+            raise ValueError(f"{answer.type} is not a type of a parameter")
+        return parameter_value_to_python(answer)

@@ -1,4 +1,4 @@
-"""A harness in real time: the programs run as `ros2 run` would start them, and can get signals."""
+"""A harness in real time: the programs run as if `ros2 run` had started them, and can receive signals."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from autograder.run.lockstep.failures import diagnose_exit, diagnose_no_answer, 
 from autograder.run.sandbox import Process
 from autograder.run.sandbox.launcher import launch
 
-START_SECONDS = 60.0  # real time from start until the nodes are seen, generous for a machine that is busy
-GRACE_NS = 300_000_000  # real time for the programs to match the grader's endpoints; they cannot be asked
-SETTLE_SECONDS = 3.0  # real time for a node's endpoints to be seen, once the node is
+START_SECONDS = 60.0  # maximum real time until the nodes are visible; it is long enough for a busy machine
+GRACE_NS = 300_000_000  # real time in which the programs match the grader's endpoints; the programs cannot be asked
+SETTLE_SECONDS = 3.0  # maximum real time from the discovery of a node to that of its endpoints
 
 
 class RealTimeHarness(Harness):
-    """Programs in real time, for tests that stepping cannot cover: signals, own threads, whole processes."""
+    """Programs in real time, for what cannot be tested in steps: signals, threads and processes."""
 
     _running: Sequence[tuple[Program, Process]] = ()
 
     def _start(self) -> None:
-        self._began = time.monotonic()
+        self._start_time = time.monotonic()
         for program, path in zip(self.programs, self._paths, strict=True):
             command = [sys.executable, str(path), *program.arguments]
             process = self.enter_context(launch(command, self._sandbox))
             self._running = [*self._running, (program, process)]
-        up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
-        if not up and len(self.nodes()) < len(self.running - self.optional):
+        is_up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
+        if not is_up and len(self.nodes()) < len(self.running - self.optional):
             raise StudentError(diagnose_no_answer(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
 
     @property
@@ -52,18 +52,18 @@ class RealTimeHarness(Harness):
 
     @property
     def seconds(self) -> float:
-        return time.monotonic() - self._began
+        return time.monotonic() - self._start_time
 
     def step(self, dt_ns: int) -> None:
-        """Take messages for `dt_ns` nanoseconds of real time; none of them if the caller is late already."""
+        """Take messages for `dt_ns` nanoseconds of real time. If `dt_ns` is not positive, return at once."""
         if dt_ns <= 0:
             return
-        end = time.monotonic() + dt_ns / 1e9
+        end_time = time.monotonic() + dt_ns / 1e9
         pids = (process.innermost() for process in self.processes)
         with cpu_starvation.watch(pids, dt_ns / 1e9, self._workspace.time_record.add_wait):
-            while (left := end - time.monotonic()) > 0:
+            while (remaining_seconds := end_time - time.monotonic()) > 0:
                 self._alive()
-                self._grader_node.spin(min(left, 0.05))
+                self._grader_node.spin(min(remaining_seconds, 0.05))
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         return self.wait_for(lambda: self._alive() and condition(), seconds)
@@ -72,21 +72,21 @@ class RealTimeHarness(Harness):
         return usual_rate([received.seconds for received in self.messages(topic, since=since)], self.seconds - since)
 
     def stop(self, number: signal.Signals, seconds: float) -> int | None:
-        """Send a signal; return the first program's exit status, or None if it is still there after `seconds`."""
+        """Send a signal. Return the first program's exit status, or None if it is still running after `seconds`."""
         for process in self.processes:
             process.signal(number)
         first = self.processes[0]
         return first.returncode if first.wait(seconds) else None
 
     def _arrival_seconds(self, arrived_ns: int) -> float:
-        # It may have waited here while the grader was busy with another harness.
+        # The message may have waited while the grader was busy with another harness.
         return self.seconds - (time.time_ns() - arrived_ns) / 1e9
 
     def _alive(self) -> bool:
-        """Drop an optional program that has ended; return True.
+        """Drop optional programs that have ended, and return True.
 
         Raises:
-            StudentError: another program has ended; it says how.
+            StudentError: a program that is not optional has ended.
         """
         for program, process in self._running:
             if process.exit_reason is None:
@@ -98,18 +98,18 @@ class RealTimeHarness(Harness):
         return True
 
     def _match(self) -> None:
-        began = self.seconds
+        start = self.seconds
         super()._match()
-        self.discovery_seconds = max(self.discovery_seconds, self.seconds - began)
+        self.discovery_seconds = max(self.discovery_seconds, self.seconds - start)
         self.step(GRACE_NS)
 
     def _topics(self) -> tuple[set[str], set[str]]:
-        def complete() -> bool:
+        def is_complete() -> bool:
             return all(map(self._grader_node.subscriptions_of, self._publishes)) and all(
                 map(self._grader_node.publishers_of, self._subscribes)
             )
 
-        self.wait_for(lambda: self._alive() and complete(), SETTLE_SECONDS)
+        self.wait_for(lambda: self._alive() and is_complete(), SETTLE_SECONDS)
         return {topic for topic in self._publishes if self._grader_node.subscriptions_of(topic)}, {
             topic for topic in self._subscribes if self._grader_node.publishers_of(topic)
         }
@@ -121,19 +121,19 @@ class RealTimeHarness(Harness):
             self.node.count_publishers(reader.topic_name) for reader in readers
         )
 
-    def _reach(self, client: Any, seconds: float) -> bool:
+    def _wait_for_server(self, client: Any, seconds: float) -> bool:
         return self.until(client.service_is_ready, seconds)
 
 
 def usual_rate(instants: Sequence[float], seconds: float) -> float:
-    """Return how many times in `seconds` something usually happens; `instants` are in s, ascending.
+    """Return the usual rate, per second, of events during `seconds`. `instants` are their times in s, ascending.
 
-    A busy machine sometimes keeps a program from running, and the events of that time never happen. A count would blame
-    the program, but the median interval does not. If the count is less than half of the number that the median interval
-    implies, the count is used.
+    A busy machine sometimes keeps a program from running, and the events that were due then never happen. The number of
+    events would blame the program for that, but the median interval does not. The number is used only if it is less
+    than half of what the median interval implies.
     """
     count = len(instants) / seconds
     if len(instants) < 3:
         return count
-    usual = 1.0 / max(statistics.median(after - before for before, after in pairwise(instants)), 1e-6)
-    return usual if count > usual / 2 else count
+    median_rate = 1.0 / max(statistics.median(after - before for before, after in pairwise(instants)), 1e-6)
+    return median_rate if count > median_rate / 2 else count

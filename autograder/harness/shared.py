@@ -1,4 +1,4 @@
-"""One harness for several checks: a program is started once, and again only where it is of no further use."""
+"""Keeps one harness for several checks, and starts its programs again only if they can no longer be used."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from autograder.run.sandbox import Process
 
 
 class Programs(AbstractContextManager[Any], Protocol):
-    """Programs in a harness, or in something built on one. They run inside its `with` block."""
+    """Programs in a harness, or in an object that is based on a harness. They run inside its `with` block."""
 
     @property
     def processes(self) -> tuple[Process, ...]:
@@ -24,36 +24,36 @@ P = TypeVar("P", bound=Programs)
 class Shared(ExitStack, Generic[P]):
     """Keeps one harness for several checks, and replaces it once one of its programs has ended.
 
-    Programs that did not start are not started again: each further check gets the same error at once. It is a context
-    manager: the end of the block ends the programs.
+    Programs that did not start are not started again: each further check gets the same error at once. `Shared` is a
+    context manager. Its exit ends the programs.
 
     Args:
-        make: makes a harness, not yet entered.
-        usable: whether a harness whose programs run is fit for the next check; it is replaced when not.
+        make: creates a harness, not yet entered.
+        usable: returns whether a harness with running programs can be used for the next check. If not, it is replaced.
     """
 
     def __init__(self, make: Callable[[], P], usable: Callable[[P], bool] = lambda _: True) -> None:
         super().__init__()
         self._make, self._usable = make, usable
-        self._present: P | None = None
+        self._current: P | None = None
         self._error: StudentError | None = None  # why the programs did not start
 
     def get(self) -> P:
-        """Return a harness whose programs run. Raises the errors of making and entering one."""
+        """Return a harness whose programs are running. Raise the error if it cannot be created or entered."""
         if self._error is not None:
             raise self._error
-        present = self._present
-        if present is None or any(process.exit_reason for process in present.processes) or not self._usable(present):
+        current = self._current
+        if current is None or any(process.exit_reason for process in current.processes) or not self._usable(current):
             self.close()
             try:
-                present = self.enter_context(self._make())
+                current = self.enter_context(self._make())
             except StudentError as error:
                 self._error = error
                 raise
-            self._present = present
-        return present
+            self._current = current
+        return current
 
     def close(self) -> None:
-        """End the present harness; the next check gets a new one."""
-        self._present = None
+        """End the current harness. The next check gets a new one."""
+        self._current = None
         super().close()

@@ -19,9 +19,9 @@ from autograder.run.lockstep.lockstep_host import channels
 from autograder.run.lockstep.protocol import START_NS
 from autograder.run.sandbox import Process
 
-DELIVERY_SECONDS = 15.0  # real time, over a whole run, for messages that were announced and have not come yet
-SETTLE_SECONDS = 5.0  # real time for the names of the programs' nodes to be seen
-ROUNDS = 1000  # in one step; programs that still answer each other then will never stop
+DELIVERY_SECONDS = 15.0  # maximum real time that a whole run waits for announced messages
+SETTLE_SECONDS = 5.0  # maximum real time until the names of the programs' nodes are visible
+MAX_ROUNDS = 1000  # at one instant; programs that answer each other more often would never stop
 
 
 class _OptionalProgramLost(Exception):
@@ -29,15 +29,15 @@ class _OptionalProgramLost(Exception):
 
 
 class SteppedHarness(Harness):
-    """Programs that are stepped through ROS time: faster than real time, and the same every time.
+    """Programs that are stepped through ROS time. This is faster than real time, and all runs are the same.
 
-    They start at ROS time `START_NS`. `tick_ns` hits every firing of their timers, between 10 ms and 100 ms. In a step
-    they take what was sent before, then their timers fire, and then they take what they sent each other; `turns` has
-    the order.
+    They start at ROS time `START_NS`. `tick_ns` is between 10 ms and 100 ms, and is chosen so that their timers fire at
+    the end of a step. In a step, the programs first take the messages that were sent before it, then their timers fire,
+    and finally they take the messages that they sent to each other. `autograder.harness.turns` defines the order.
 
     Attributes:
-        notes: by executable, one of the protocol's `REASONS` why steps are not all that moves a program, if so.
-        activations: by executable, how often the program was run, which is what a run in lockstep costs.
+        notes: for each executable that may also run between steps, the reason: one of the protocol's `REASONS`.
+        activations: how often each executable was run, which determines the cost of a run in lockstep.
     """
 
     _stepped: Sequence[SteppedProgram] = ()
@@ -47,12 +47,12 @@ class SteppedHarness(Harness):
         self._now_ns = START_NS
         self.notes: dict[str, str] = {}
         self.activations: Counter[str] = Counter()
-        self._delivery_seconds_left = DELIVERY_SECONDS
+        self._delivery_seconds = DELIVERY_SECONDS
         for number, (program, path) in enumerate(zip(self.programs, self._paths, strict=True)):
             stepper = self.enter_context(Stepper(self._sandbox, path, program.arguments, self._clock_rate))
             self._stepped = [*self._stepped, SteppedProgram(number, program, stepper)]
         for stepped in self._stepped:
-            with suppress(_OptionalProgramLost), self._attributing(stepped):
+            with suppress(_OptionalProgramLost), self._attribute_errors_to(stepped):
                 stepped.stepper.wait_ready()
 
     @property
@@ -74,7 +74,7 @@ class SteppedHarness(Harness):
     def step(self, dt_ns: int) -> None:
         """Let the programs take what was published, then run the timers that are due.
 
-        A message that is lost on the way is a DoubtfulError: loopback loses none by itself.
+        Raises a DoubtfulError if a message is lost, because the loopback interface does not lose any by itself.
         """
         end = self._now_ns + dt_ns
         while True:
@@ -84,19 +84,19 @@ class SteppedHarness(Harness):
 
     def _advance(self, dt_ns: int) -> None:
         self._now_ns += dt_ns
-        self._add_sent()
+        self._deliver_from_grader()
         instants = (self._now_ns - 1, self._now_ns) if dt_ns else ()
         alone = len(self._stepped) == 1
-        # The grader may answer what comes of a request, and the answer has its place in the same phase.
-        asked = any(not channels.is_topic(name) for s in self._stepped for _, sent in s.inbox for name in sent)
-        if self._flow is not None and (alone or not asked):
+        # The grader may react to the response to a request, and its reaction belongs to the same phase.
+        has_request = any(not channels.is_topic(name) for s in self._stepped for _, sent in s.inbox for name in sent)
+        if self._flow is not None and (alone or not has_request):
             for stepped in self._flow if instants else ():
                 for batch in batches(turns_of(stepped, instants, alone=alone)):
                     self._run(stepped, batch)
         else:
             for instant in instants:
                 for stepped in self._stepped:
-                    self._give_turn(stepped, instant, by_itself=instant == self._now_ns and stepped.is_due(instant))
+                    self._give_turn(stepped, instant, is_due=instant == self._now_ns and stepped.is_due(instant))
                 self._settle(instant)
         self._settle(self._now_ns)
 
@@ -112,30 +112,30 @@ class SteppedHarness(Harness):
     # Turns.
 
     def _settle(self, instant: int) -> None:
-        """Run rounds at one instant until no message is left."""
-        for _ in range(ROUNDS):
-            self._add_sent()
+        """Run rounds at one instant until no messages are left."""
+        for _ in range(MAX_ROUNDS):
+            self._deliver_from_grader()
             if not any(stepped.inbox for stepped in self._stepped):
                 return
             for stepped in self._stepped:
                 self._give_turn(stepped, instant)
         sentence = (
-            f"Your nodes answered each other {ROUNDS} times without any time going by, and would go on for ever: a "
+            f"Your nodes answered each other {MAX_ROUNDS} times without any time going by, and would go on for ever: a "
             "callback must not publish what makes it run again."
         )
         raise StudentError(Diagnosis(Kind.STUCK, sentence))
 
-    def _give_turn(self, stepped: SteppedProgram, instant: int, *, by_itself: bool = False) -> None:
-        """Run a program if it has been sent messages, or has something to do by itself."""
-        self._add_sent()
-        if stepped.inbox or by_itself:
+    def _give_turn(self, stepped: SteppedProgram, instant: int, *, is_due: bool = False) -> None:
+        """Run a program if messages were sent to it, or if something in it is due."""
+        self._deliver_from_grader()
+        if stepped.inbox or is_due:
             self._run(stepped, [Turn(Place(), instant, stepped.take())])
 
     def _run(self, stepped: SteppedProgram, turns: list[Turn]) -> None:
         """Run a program for its turns, and deliver what it sends."""
         while turns and stepped in self._stepped:
             try:
-                with self._attributing(stepped):
+                with self._attribute_errors_to(stepped):
                     reply = stepped.stepper.step([(turn.instant, turn.messages) for turn in turns])
             except _OptionalProgramLost:
                 return
@@ -143,39 +143,39 @@ class SteppedHarness(Harness):
             stepped.wake, stepped.due = reply.wake, reply.due
             for reason in reply.notes:
                 self.notes.setdefault(stepped.program.executable, reason)
-            done = turns[: len(reply.sent)]
-            self._require_arrival(reply.lost, {channel for turn in done for channel in turn.messages})
-            for turn, sent in zip(done, reply.sent, strict=True):
-                self._deliver(turn.place, sent, but=stepped)
+            finished_turns = turns[: len(reply.sent)]
+            self._require_arrival(reply.lost, {channel for turn in finished_turns for channel in turn.messages})
+            for turn, sent in zip(finished_turns, reply.sent, strict=True):
+                self._deliver(turn.place, sent, sender=stepped)
                 self._expect(sent)
             self._collect()
-            turns = turns[len(done) :]
+            turns = turns[len(finished_turns) :]
             if reply.changed:
                 self._match()
 
-    def _require_arrival(self, lost: tuple[str, ...], told: set[str]) -> None:
-        """Raise a DoubtfulError if what the grader sent is among what was announced, on these channels, and lost."""
-        for channel in lost:
-            # What others of the student's programs claim to have sent may be forged; what the grader sent is not.
-            if channel in told and channel in self._grader_node.written.values():
+    def _require_arrival(self, lost_channels: tuple[str, ...], announced_channels: set[str]) -> None:
+        """Raise a DoubtfulError if a message of the grader that was announced to a program is lost."""
+        for channel in lost_channels:
+            # Only the grader's counts are reliable. The student's programs may forge the counts of what they sent.
+            if channel in announced_channels and channel in self._grader_node.publisher_channels.values():
                 sentence = (
                     f"A message that was sent to your node on {channel.split()[0]} did not arrive: do not replace "
                     "functions of rclpy, and take each message that comes."
                 )
                 raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))
 
-    def _add_sent(self) -> None:
-        """Deliver what the grader has sent."""
+    def _deliver_from_grader(self) -> None:
+        """Deliver the messages that the grader has sent."""
         if self._grader_node.sent:
             self._deliver(Place(), self._grader_node.sent)
             self._grader_node.sent.clear()
 
-    def _deliver(self, place: Place, sent: dict[str, int], but: SteppedProgram | None = None) -> None:
-        """Put messages, sent in a turn, into the inbox of every program but `but` that reads their channels."""
+    def _deliver(self, place: Place, sent: dict[str, int], sender: SteppedProgram | None = None) -> None:
+        """Add the messages of a turn to the inbox of each program that reads their channels, except the sender's."""
         for stepped in self._stepped:
-            read = {name: count for name, count in sent.items() if name in stepped.description.reads}
-            if stepped is not but and read:
-                stepped.inbox.append((place, Counter(read)))
+            counts = {name: count for name, count in sent.items() if name in stepped.description.reads}
+            if stepped is not sender and counts:
+                stepped.inbox.append((place, Counter(counts)))
 
     def _expect(self, sent: dict[str, int]) -> None:
         for channel, count in sent.items():
@@ -184,16 +184,16 @@ class SteppedHarness(Harness):
                     reader.expected += count
 
     def _collect(self) -> None:
-        """Take all that was sent to the grader.
+        """Take all messages that were sent to the grader.
 
-        A count that is never reached is forged, or the student's own QoS dropped a message. Only what arrived counts,
-        and the waits for what does not arrive share one bound.
+        If an announced message never arrives, the count was forged, or the student's QoS dropped the message. Only
+        messages that arrived count. All waits for missing messages share one limit.
         """
-        while not self._grader_node.take_expected() and self._delivery_seconds_left > 0.0:
-            began = time.monotonic()
+        while not self._grader_node.take_expected() and self._delivery_seconds > 0.0:
+            start = time.monotonic()
             self._grader_node.spin(0.05)
             if not self._grader_node.take_expected():
-                self._delivery_seconds_left -= time.monotonic() - began
+                self._delivery_seconds -= time.monotonic() - start
         for reader in self._grader_node.readers:
             reader.expected = reader.count
 
@@ -210,15 +210,15 @@ class SteppedHarness(Harness):
         for stepped in self._stepped:
             others = [description for description in descriptions if description is not stepped.description]
             early = _sum(description.early for description in others)
-            with self._attributing(stepped):
+            with self._attribute_errors_to(stepped):
                 stepped.stepper.match(
                     _sum(description.kept for description in others),
                     {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
                 )
-            stepped.due = 0  # what it reads for the first time may be there
+            stepped.due = 0  # messages for a new subscription may have arrived
         for reader in self._grader_node.readers:
-            if reader.new:
-                reader.new = False
+            if reader.is_new:
+                reader.is_new = False
                 if reader.transient_local:
                     kept = _sum(description.kept for description in descriptions)
                     reader.expected += sum(kept[channel] for channel in reader.channels)
@@ -246,29 +246,29 @@ class SteppedHarness(Harness):
     def _describe(self) -> list[Description]:
         descriptions = []
         for stepped in self._stepped:
-            with self._attributing(stepped):
+            with self._attribute_errors_to(stepped):
                 stepped.description = stepped.stepper.describe()
                 descriptions.append(stepped.description)
         self._flow = flow(self._stepped)
         return descriptions
 
-    def _reach(self, client: Any, seconds: float) -> bool:
+    def _wait_for_server(self, client: Any, seconds: float) -> bool:
         channel = channels.request(client.srv_name, client.srv_type)
 
-        def there() -> bool:
+        def is_served() -> bool:
             return any(channel in stepped.description.servers for stepped in self._stepped)
 
-        if not there() and not self.until(there, seconds):
+        if not is_served() and not self.until(is_served, seconds):
             return False
         self._await(client.service_is_ready)
         return True
 
     @contextmanager
-    def _attributing(self, stepped: SteppedProgram) -> Iterator[None]:
-        """Drop an optional program that failed; where another one of several failed, name it in the error."""
+    def _attribute_errors_to(self, stepped: SteppedProgram) -> Iterator[None]:
+        """If a program fails in this block, drop it if it is optional, else name it in the error if several run."""
         try:
             yield
-        except UnsteppableError as error:  # of an optional program too: it is no fault of the program
+        except UnsteppableError as error:  # even for an optional program, because this is not a failure
             self.notes[stepped.program.executable] = error.reason
             raise
         except StudentError as error:

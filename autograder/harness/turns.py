@@ -1,14 +1,15 @@
-"""The order in which programs in lockstep run, for one program and for many.
+"""The order in which programs in lockstep run.
 
-A step up to an instant t of ROS time has two phases: what was to happen before t, at t - 1 ns, and what happens at t. A
-phase has rounds. In a round, the programs have their turns in the order in which they were named. A program has a turn
-if messages were sent to it. In the first round at t, it also has one if it has something to do by itself, and at
-t - 1 ns if it is the only program, too. In a turn it takes the messages that were sent before the turn and no others,
-and runs what is due. A phase ends when no message is left. A step of no length is one phase, without what is due.
+A step that ends at ROS time t has two phases: one at t - 1 ns, for what was due before t, and one at t. A phase
+consists of rounds. In a round, the programs take turns in the order in which they were named. A program has a turn if
+messages were sent to it. In the first round at t, a program also has a turn if something in it is due. A program that
+is alone in its harness has such a turn at t - 1 ns as well. In a turn, a program takes exactly the messages that were
+sent before the turn, and runs what is due. A phase ends when no messages are left. A step of length 0 has only one
+phase, in which nothing is due.
 
-Nothing but this order is seen. So a program that has nothing to do is not run. And where no message can come back to
-its sender by way of others, the turns of the first program in the flow are known at once: it runs for all of a step's.
-Then those of the next are known.
+Only this order is observable, so a program that has nothing to do is not run. If no message can return to its sender
+via other programs, all turns of the first program in the flow are known in advance. That program then runs once for all
+its turns in a step, and afterwards the turns of the next program are known.
 """
 
 from __future__ import annotations
@@ -22,21 +23,21 @@ from typing import NamedTuple
 from autograder.harness.base import Program
 from autograder.run.lockstep import Description, Stepper
 from autograder.run.lockstep.lockstep_host import channels
-from autograder.run.lockstep.protocol import answers
+from autograder.run.lockstep.protocol import response_channel
 
-_PARAMETER_EVENTS = "/parameter_events"  # every program publishes them, and no description names them
+_PARAMETER_EVENTS = "/parameter_events"  # every program publishes on this topic, but no description lists it
 
 
 class Place(NamedTuple):
-    """Where a turn has its place in a step, in this order."""
+    """The position of a turn in a step. Places have the same order as the turns."""
 
-    phase: int = -1  # the grader sends before each phase
+    phase: int = -1  # -1 is before all turns of a step: the grader sends its messages then
     round: int = 0
-    number: int = 0  # of the program
+    number: int = 0  # the program's number, as in `SteppedProgram`
 
 
 class Turn(NamedTuple):
-    """A program's turn: its place and instant, and by channel the messages that it takes."""
+    """A program's turn: its place, its instant, and the number of messages that it takes from each channel."""
 
     place: Place
     instant: int
@@ -45,83 +46,90 @@ class Turn(NamedTuple):
 
 @dataclass(eq=False)
 class SteppedProgram:
-    """One program of a harness in lockstep; `number` is its place among those that were named."""
+    """One program of a harness in lockstep; `number` is its index among the programs of the harness."""
 
     number: int
     program: Program
     stepper: Stepper
-    description: Description = field(default_factory=Description)  # of its nodes, as last asked
-    inbox: list[tuple[Place, Counter[str]]] = field(default_factory=list)  # what was sent to it, by sending turns
+    description: Description = field(default_factory=Description)  # the last description of its nodes
+    # For each turn that sent messages to it: the place of the turn, and the number of messages on each channel.
+    inbox: list[tuple[Place, Counter[str]]] = field(default_factory=list)
     wake: int | None = None  # as in `Reply`
     due: int | None = 0  # as in `Reply`
 
     def is_due(self, instant: int) -> bool:
-        """Return whether it may have something to do by itself."""
+        """Return whether something in this program may be due at an instant."""
         return self.due is not None and self.due <= instant
 
     def take(self, before: Place | None = None) -> Counter[str]:
-        """Remove from the inbox what was sent before a place, or all, and return it by channel."""
-        taken = [entry for entry in self.inbox if before is None or entry[0] < before]
-        self.inbox = [entry for entry in self.inbox if entry not in taken]
-        return sum((counts for _, counts in taken), Counter())
+        """Remove the messages that were sent before a place from the inbox. Return their counts by channel.
+
+        If `before` is None, all messages are removed.
+        """
+        entries = [entry for entry in self.inbox if before is None or entry[0] < before]
+        self.inbox = [entry for entry in self.inbox if entry not in entries]
+        return sum((counts for _, counts in entries), Counter())
 
 
 def turns_of(program: SteppedProgram, instants: Sequence[int], *, alone: bool) -> list[Turn]:
-    """Return a program's turns in a step with a phase at each of the instants; all that is sent to it is in its inbox.
+    """Return a program's turns in a step with a phase at each instant.
 
-    After its first turn nobody knows what is due: it has a turn in the first round of every later phase.
+    All messages for the program must be in its inbox. What is due after its first turn is not known, so it also has a
+    turn in the first round of every later phase.
     """
     turns: list[Turn] = []
     for phase, instant in enumerate(instants):
-        by_itself = (alone or phase == len(instants) - 1) and (bool(turns) or program.is_due(instant))
+        is_due = (alone or phase == len(instants) - 1) and (bool(turns) or program.is_due(instant))
         place = Place(phase, 0, program.number)
-        while by_itself or any(sent < Place(phase + 1) for sent, _ in program.inbox):
+        while is_due or any(sent < Place(phase + 1) for sent, _ in program.inbox):
             messages = program.take(place)
-            if messages or by_itself:
+            if messages or is_due:
                 turns.append(Turn(place, instant, messages))
-            by_itself, place = False, place._replace(round=place.round + 1)
+            is_due, place = False, place._replace(round=place.round + 1)
     return turns
 
 
 def batches(turns: Iterable[Turn]) -> list[list[Turn]]:
-    """Return turns of one program in lists, for each of which it can run at once.
+    """Group the turns of one program into batches, so that the program can run once for each batch.
 
-    It holds back the messages of later turns by subscription, so a topic may have messages in one turn of a list. The
-    queue of a subscription could not hold those of several, either.
+    The program holds back the messages of later turns separately for each subscription, so only one turn of a batch may
+    have messages on a given topic. Besides, a subscription's queue may be too short for the messages of several turns.
     """
-    found: list[list[Turn]] = []
-    seen: set[str] = set()
+    groups: list[list[Turn]] = []
+    group_topics: set[str] = set()
     for turn in turns:
         topics = set(map(channels.topic_of, turn.messages))
-        if not found or topics & seen:
-            found.append([])
-            seen = set()
-        found[-1].append(turn)
-        seen |= topics
-    return found
+        if not groups or topics & group_topics:
+            groups.append([])
+            group_topics = set()
+        groups[-1].append(turn)
+        group_topics |= topics
+    return groups
 
 
 def flow(programs: Sequence[SteppedProgram]) -> list[SteppedProgram] | None:
-    """Return programs in an order in which none can send an earlier one anything; None if there is no such order."""
-    senders = {
+    """Return the programs in an order in which none can affect an earlier one, or None if there is no such order."""
+    senders_to = {
         receiver: [
             sender
             for sender in programs
-            if sender is not receiver and _reaches(sender.description, receiver.description)
+            if sender is not receiver and _may_affect(sender.description, receiver.description)
         ]
         for receiver in programs
     }
     try:
-        return list(TopologicalSorter(senders).static_order())
+        return list(TopologicalSorter(senders_to).static_order())
     except CycleError:
         return None
 
 
-def _reaches(sender: Description, receiver: Description) -> bool:
-    """Return whether a program may send another one anything, or send anybody anything on the same topic as it."""
-    written = {channel for channel, _ in sender.writers}
-    sent = {*written, *(channel for channel, _ in sender.clients)}
-    sent.update(answers(name, receiver.prefix) for name in sender.servers)
-    shared = {*map(channels.topic_of, written)} & {channels.topic_of(channel) for channel, _ in receiver.writers}
-    hears_parameters = any(channels.topic_of(channel) == _PARAMETER_EVENTS for channel in receiver.reads)
-    return bool(sent & receiver.reads or shared or hears_parameters)
+def _may_affect(sender: Description, receiver: Description) -> bool:
+    """Return whether the first program may send messages to the second, or both publish on the same topic."""
+    written_channels = {channel for channel, _ in sender.writers}
+    sent_channels = {*written_channels, *(channel for channel, _ in sender.clients)}
+    sent_channels.update(response_channel(name, receiver.prefix) for name in sender.servers)
+    shared_topics = {*map(channels.topic_of, written_channels)} & {
+        channels.topic_of(channel) for channel, _ in receiver.writers
+    }
+    reads_parameter_events = any(channels.topic_of(channel) == _PARAMETER_EVENTS for channel in receiver.reads)
+    return bool(sent_channels & receiver.reads or shared_topics or reads_parameter_events)

@@ -1,8 +1,9 @@
 """Finds the accounts in the names of GitHub Classroom's clones: ASSIGNMENT-ACCOUNT, where both may contain hyphens.
 
 The account is everything after the assignment's name: `hw-ada-bob` does not belong to bob. `gh classroom clone` puts
-the clones in a folder ASSIGNMENT-submissions. In any other folder, the assignment's name is the prefix that most clones
-share. If several are equally frequent, it is the one that the most accounts of the roster follow, at least two.
+the clones in a folder named ASSIGNMENT-submissions. In any other folder, the assignment's name is the prefix that most
+clones share. If several prefixes are equally frequent, it is the one that most of the roster's accounts follow, and at
+least two do.
 """
 
 from __future__ import annotations
@@ -11,22 +12,22 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 
 FOLDER_SUFFIX = "-submissions"
-MIN_ACCOUNTS = 2  # of the roster; a single match may be an unknown account that ends with a known one
+MIN_ACCOUNTS = 2  # accounts of the roster; one may only be the end of an unknown account
 
 
 def prefixes(name: str) -> list[str]:
-    """Return the possible names of the assignment in the name of a clone, the shortest first."""
+    """Return the names that the assignment of a clone may have according to the clone's name, shortest first."""
     parts = name.casefold().split("-")
     return ["-".join(parts[:end]) for end in range(1, len(parts))]
 
 
 def assignment_of(names: Sequence[str], folder: str, course_id: str, accounts: Collection[str]) -> str | None:
-    """Return GitHub Classroom's name of the assignment of some clones, or None if it is unclear.
+    """Return the name that the assignment of some clones has in GitHub Classroom, or None if it is unclear.
 
     Args:
         names: the names of the clones.
         folder: the name of the folder that contains them.
-        course_id: the course's name of the assignment, used as a last resort.
+        course_id: the assignment's name in the course, used as a last resort.
         accounts: the accounts on the roster.
     """
     count = Counter(prefix for name in names for prefix in prefixes(name))
@@ -38,8 +39,8 @@ def assignment_of(names: Sequence[str], folder: str, course_id: str, accounts: C
     candidates = [prefix for prefix in count if count[prefix] == max(count.values())]
     if len(candidates) == 1:
         return candidates[0]
-    known = {account.casefold() for account in accounts}
-    matches = {prefix: sum(account_in(name, prefix) in known for name in names) for prefix in candidates}
+    known_accounts = {account.casefold() for account in accounts}
+    matches = {prefix: sum(account_in(name, prefix) in known_accounts for name in names) for prefix in candidates}
     best, second = sorted(candidates, key=lambda prefix: matches[prefix], reverse=True)[:2]
     if matches[best] >= MIN_ACCOUNTS and matches[best] > matches[second]:
         return best

@@ -18,7 +18,7 @@ from autograder.grade.batch import submission_in
 from autograder.lms.clones import FOLDER_SUFFIX, account_in, assignment_of, prefixes
 from autograder.lms.roster import Roster
 from autograder.lms.submission_names import METADATA, DownloadedItem, read_metadata, read_names, resubmitted
-from autograder.result.class_folder import why_not_a_folder
+from autograder.result.class_folder import folder_name_problem
 from autograder.submission.intake.ignored import is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook
 
@@ -30,11 +30,11 @@ class CollectedSubmissions:
     Attributes:
         submissions: the newest submission of each student; the members of a group share a path.
         late: students whose submission the system marks as late.
-        older: names of submissions that were replaced by a newer one of the same student.
+        older: names of submissions that the same student replaced by a newer one.
         unmatched: pairs (name, reason) of items that match no student or are not submissions.
         missing: students without a submission.
         times: the time of each student's submission in ISO 8601, if the system states it.
-        late_by: the delays in Moodle's table, in seconds.
+        late_by: the delay of each student according to Moodle's table, in seconds.
     """
 
     submissions: Mapping[str, Path]
@@ -50,7 +50,7 @@ class CollectedSubmissions:
 def unpacked(download: Path) -> Iterator[Path]:
     """Yield the folder of a download. A zip is unpacked to a temporary folder.
 
-    Raises UsageError if it is neither a folder nor a zip, or contains a path outside of itself.
+    Raises UsageError if the download is neither a folder nor a zip, or if the zip contains a path outside of itself.
     """
     if download.is_dir():
         yield download
@@ -58,9 +58,9 @@ def unpacked(download: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="handed-in-") as folder:
         try:
             with zipfile.ZipFile(download) as archive:
-                outside = [name for name in archive.namelist() if name.startswith("/") or ".." in name.split("/")]
-                if outside:  # `extractall` would change the name, perhaps to another student's
-                    raise ValueError(f"{outside[0]} points outside the archive")
+                outside_names = [name for name in archive.namelist() if name.startswith("/") or ".." in name.split("/")]
+                if outside_names:  # `extractall` would change the name, perhaps to another student's
+                    raise ValueError(f"{outside_names[0]} points outside the archive")
                 archive.extractall(folder)
         except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
             raise UsageError(f"{download}: not a folder, and not a readable zip: {error}") from None
@@ -74,7 +74,7 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
     files, they are copied to a folder in `scratch`.
     """
     submitted, unmatched = _by_student(folder, roster, assignment)
-    newest = {name: _newest(attempts) for name, attempts in submitted.items()}
+    newest = {name: _newest_attempt(attempts) for name, attempts in submitted.items()}
     students = [student for student in roster.students if student.id in newest]
     times = {student.id: max(item.time for item in newest[student.id]) for student in students}
     return CollectedSubmissions(
@@ -91,7 +91,7 @@ def collect(folder: Path, roster: Roster, assignment: str, scratch: Path) -> Col
 def newest_items(folder: Path, roster: Roster, assignment: str) -> dict[str, list[DownloadedItem]]:
     """Return the files and folders of each student's newest attempt in an unpacked download."""
     submitted, _ = _by_student(folder, roster, assignment)
-    return {name: _newest(attempts) for name, attempts in submitted.items()}
+    return {name: _newest_attempt(attempts) for name, attempts in submitted.items()}
 
 
 def _by_student(
@@ -105,7 +105,7 @@ def _by_student(
         student = roster.find(item.keys)
         if student is None:
             unmatched.append((item.listed_name, item.doubt or f"it matches no student in {roster.path.name}"))
-        elif reason := why_not_a_folder(student.id):
+        elif reason := folder_name_problem(student.id):
             unmatched.append((item.listed_name, f"{reason} in {roster.path.name}"))
         elif not item.is_submission:
             texts.append((student.id, item))
@@ -129,7 +129,7 @@ def _items(folder: Path, roster: Roster, assignment: str) -> tuple[list[Download
 
 
 def _is_submission(item: DownloadedItem, folder: Path, roster: Roster) -> bool:
-    """Return whether the only item of a download is a submission, not a folder with all submissions."""
+    """Return whether the only item of a download is a submission, rather than a folder with all submissions."""
     return bool(item.doubt) or roster.find(item.keys) is not None or folder.resolve().name.endswith(FOLDER_SUFFIX)
 
 
@@ -156,12 +156,12 @@ def _with_account(item: DownloadedItem, prefix: str | None, accounts: Set[str]) 
     return replace(item, doubt=doubt)
 
 
-def _newest(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
+def _newest_attempt(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
     """Return the files and folders of a student's newest attempt."""
     latest = max(item.order for item in items)
     attempt = [item for item in items if item.order == latest]
-    replaced = resubmitted(attempt)
-    return [item for item in attempt if item not in replaced]
+    replaced_items = resubmitted(attempt)
+    return [item for item in attempt if item not in replaced_items]
 
 
 def _submission_path(attempt: Sequence[DownloadedItem], assignment: str, scratch: Path) -> Path:

@@ -1,8 +1,8 @@
 """Writes the zip of feedback pages that Moodle or Canvas returns to students. File names identify the student.
 
 Moodle ("Upload multiple feedback files in a zip"; mod/assign/feedback/file/importziplib.php): a path contains
-NAME_NUMBER_assignsubmission_file_, as in a download of submissions. The number is the participant's, the name has no
-underscore, and the rest is the name of the feedback file.
+NAME_NUMBER_assignsubmission_file_, as in a download of submissions, and then the name of the feedback file. NUMBER is
+the participant's number, and NAME must not contain an underscore.
 
 Canvas ("Re-Upload Submissions"; app/models/abstract_assignment.rb, `infer_comment_context_from_filename`): a file has
 the same name as in the download. The first two numbers between underscores are the ids of the user and of an attachment
@@ -34,6 +34,7 @@ from autograder.submission.intake.names import is_notebook
 
 FORBIDDEN = re.compile(r'[_/\\:*?"<>|\x00-\x1f]+')
 MAX_NAME = 100  # characters of a student's name
+# Modes of `tarfile.open`, by the endings of file names.
 TAR = {
     **{".tar": "w", ".tar.gz": "w:gz", ".tgz": "w:gz", ".tar.bz2": "w:bz2", ".tbz2": "w:bz2", ".tbz": "w:bz2"},
     **{".tar.xz": "w:xz", ".txz": "w:xz"},
@@ -42,7 +43,7 @@ TAR = {
 
 @dataclass(frozen=True)
 class FeedbackPaths:
-    """The path of each student's feedback in the zip, and pairs (student, reason) of those without one."""
+    """The path of each student's feedback in the zip, and a pair (student, reason) for each student without one."""
 
     by_student: Mapping[str, str]
     left_out: tuple[tuple[str, str], ...]
@@ -66,21 +67,21 @@ def moodle_paths(roster: Roster, students: Iterable[str]) -> FeedbackPaths:
 
 
 def canvas_paths(folder: Path, roster: Roster, assignment: str, students: Iterable[str]) -> FeedbackPaths:
-    """Return the paths of students' feedback in Canvas's zip, which are the names of submitted files.
+    """Return the path of each student's feedback in Canvas's zip. The path is the name of a submitted file.
 
     Args:
         folder: the unpacked download of the submissions.
         roster: the exported gradebook.
-        assignment: the course's name of the assignment.
+        assignment: the assignment's name in the course.
         students: the students who get feedback.
     """
     newest = newest_items(folder, roster, assignment)
     by_student, left_out = {}, []
     for student in students:
-        recognized = [item.path.name for item in newest.get(student, ()) if _is_recognized(item)]
-        ranked = sorted((rank, name) for name in recognized if (rank := _rank(name)) is not None)
-        if ranked:
-            by_student[student] = ranked[0][1]
+        recognized_names = [item.path.name for item in newest.get(student, ()) if _is_recognized(item)]
+        ranked_names = sorted((rank, name) for name in recognized_names if (rank := _rank(name)) is not None)
+        if ranked_names:
+            by_student[student] = ranked_names[0][1]
         else:
             left_out.append(
                 (student, "the download has no page, archive or notebook of this student that Canvas accepts again")
@@ -89,18 +90,18 @@ def canvas_paths(folder: Path, roster: Roster, assignment: str, students: Iterab
 
 
 def write_archive(results: Collection[Result], paths: FeedbackPaths, out: Path) -> None:
-    """Write the zip with the feedback of results atomically."""
+    """Write the zip with the feedback on `results`, replacing an old one only when it is complete."""
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=out.parent, prefix=".feedback-") as scratch:
-        written = Path(scratch) / "feedback.zip"
-        with zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as archive:
+        new_zip = Path(scratch) / "feedback.zip"
+        with zipfile.ZipFile(new_zip, "w", zipfile.ZIP_DEFLATED) as archive:
             for result in results:
                 if (name := paths.by_student.get(result.student)) is not None:
-                    archive.writestr(_member(name), _feedback_file(name, result, Path(scratch)))
-        written.replace(out)
+                    archive.writestr(_zip_entry(name), _feedback_file(name, result, Path(scratch)))
+        new_zip.replace(out)
 
 
-def _member(name: str) -> zipfile.ZipInfo:
+def _zip_entry(name: str) -> zipfile.ZipInfo:
     """Return a zip entry that is readable by everyone and has a fixed time."""
     member = zipfile.ZipInfo(name)
     member.compress_type, member.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
@@ -108,7 +109,7 @@ def _member(name: str) -> zipfile.ZipInfo:
 
 
 def _feedback_file(name: str, result: Result, scratch: Path) -> bytes:
-    """Return a result's feedback as a file of the type that its name indicates. `scratch` gets temporary files."""
+    """Return a result's feedback as a file of the type that `name` indicates. `scratch` is for temporary files."""
     if is_notebook(name):
         return _notebook(result, scratch)
     lower_name, page = name.casefold(), feedback.write(result, scratch, artifacts=result.folder).read_bytes()
@@ -119,7 +120,7 @@ def _feedback_file(name: str, result: Result, scratch: Path) -> bytes:
 
 
 def _rank(name: str) -> int | None:
-    """Return how suitable a file of this name is for feedback, 0 being the best, or None if it is not."""
+    """Return how suitable a file with this name is for feedback, 0 being the best, or None if it is unsuitable."""
     lower_name = name.casefold()
     kinds = ((".html", ".htm"), (".zip",), tuple(TAR))
     return next(
@@ -137,7 +138,7 @@ def _is_recognized(item: DownloadedItem) -> bool:
 def _zip(page: bytes) -> bytes:
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive:
-        archive.writestr(_member(feedback.PAGE), page)
+        archive.writestr(_zip_entry(feedback.PAGE), page)
     return data.getvalue()
 
 

@@ -1,6 +1,6 @@
-"""Determines how late a submission is, and which share of its marks it keeps.
+"""Determines how late a submission is, and what share of its marks it keeps.
 
-The deadline is `until` in the student's row of the table of extensions, or the due time plus the `days` of the row.
+The deadline is `until` in the student's row of the table of extensions, or the due time plus `days` in that row.
 
 The submission time is `submitted` in that row, the time in the download, or the due time plus the delay in Moodle's
 table, whichever is known first. Without a time, a submission is late if the system marks it as late.
@@ -21,7 +21,7 @@ from autograder.exceptions import UsageError
 from autograder.lms.tables import FindStudent, Row, read_rows
 
 DAY = timedelta(days=1)
-MAX_DAYS = 3660  # of an extension
+MAX_DAYS = 3660  # the longest extension
 DAYS, UNTIL, SUBMITTED = "days", "until", "submitted"
 
 
@@ -49,7 +49,7 @@ class Lateness:
 
     Attributes:
         kept_share: the share of its marks that it keeps, 0 to 1.
-        days: the number of late days, or None if the system only says that it is late.
+        days: the number of late days, or None if the system only reports that it is late.
         unclear: a sentence with the reason if the effect cannot be determined, or an empty string.
     """
 
@@ -63,7 +63,7 @@ class LatePolicy:
     """The rules for late submissions.
 
     Attributes:
-        flat: the percentage of its marks that a late submission loses, independent of the delay.
+        flat: the percentage of its marks that a late submission loses, whatever its delay.
         per_day: the percentage that it loses for each started day; one of the two is 0.
         floor: the percentage that it always keeps.
         grace: the longest delay without a deduction.
@@ -105,8 +105,8 @@ class LatePolicy:
         days = math.ceil(delay / DAY)
         return self._deduct(self.flat + self.per_day * days, days)
 
-    def _deduct(self, lost: float, days: int | None) -> Lateness:
-        return Lateness(max(self.floor, 100.0 - lost, 0.0) / 100, days)
+    def _deduct(self, lost_percent: float, days: int | None) -> Lateness:
+        return Lateness(max(self.floor, 100.0 - lost_percent, 0.0) / 100, days)
 
 
 def read_extensions(path: Path, find_student: FindStudent, zone: tzinfo | None) -> dict[str, Extension]:
@@ -144,9 +144,9 @@ def parse_time(text: str, zone: tzinfo | None) -> datetime:
         zone: the time zone of a time without one; None means this machine's.
 
     Raises:
-        UsageError: it is not such a time.
+        UsageError: the text is not such a time.
     """
-    parsed = _parsed(text)
+    parsed = _parse(text)
     if parsed.tzinfo is not None:
         return parsed
     return parsed.astimezone() if zone is None else parsed.replace(tzinfo=zone)
@@ -154,10 +154,10 @@ def parse_time(text: str, zone: tzinfo | None) -> datetime:
 
 def zone_of(text: str) -> tzinfo | None:
     """Return the time zone in an ISO 8601 time, or None. Raises UsageError like `parse_time`."""
-    return _parsed(text).tzinfo
+    return _parse(text).tzinfo
 
 
-def _parsed(text: str) -> datetime:
+def _parse(text: str) -> datetime:
     try:
         return datetime.combine(date.fromisoformat(text), time.max)
     except ValueError:

@@ -23,7 +23,7 @@ from autograder.lms.tables import FindStudent, Row, read_rows
 from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome, Visibility
 
-COMMENT = " comment"  # after a cell's name, the heading of an optional column
+COMMENT = " comment"  # a cell's name with this ending is the heading of an optional column
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def read_manual(path: Path, cells: Mapping[str, float], find_student: FindStuden
 def add_manual(
     results: Sequence[Result], marks: ManualMarks, cells: Mapping[str, float]
 ) -> tuple[list[Result], list[tuple[str, str]]]:
-    """Add manual points to graded results. Also return pairs (student, sentence) of those with incomplete points.
+    """Add manual points to graded results. Also return pairs (student, sentence) for incomplete points.
 
     The result of such a student is unclear: it has no mark, and its sentence says which points are missing. Raises
     UsageError if a student has points above 0 but no result.
@@ -83,16 +83,16 @@ def add_manual(
 def _with_marks(result: Result, marks: Mapping[str, ManualMark], cells: Mapping[str, float]) -> Result:
     if result.status is not Status.GRADED:
         return result
-    missing = [name for name in cells if name not in marks or marks[name].points is None]
-    if missing:
-        sentence = f"Not marked yet: {', '.join(missing)}."
+    missing_names = [name for name in cells if name not in marks or marks[name].points is None]
+    if missing_names:
+        sentence = f"Not marked yet: {', '.join(missing_names)}."
         return replace(result, status=Status.UNCLEAR, diagnosis=Diagnosis(Kind.UNCLEAR, sentence))
-    checks = [_check(name, max_points, marks[name]) for name, max_points in cells.items()]
+    checks = [_check_result(name, max_points, marks[name]) for name, max_points in cells.items()]
     max_points = math.fsum((result.max_score, *cells.values()))
     return replace(result, checks=(*result.checks, *checks), max_score=max_points)
 
 
-def _check(name: str, max_points: float, mark: ManualMark) -> CheckResult:
+def _check_result(name: str, max_points: float, mark: ManualMark) -> CheckResult:
     points = mark.points or 0.0
     return CheckResult(
         id=name,

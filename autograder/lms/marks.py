@@ -25,11 +25,11 @@ CANVAS_POINTS = "points possible"
 
 @dataclass(frozen=True)
 class MarkTable:
-    """The table of a system with the marks of one assignment.
+    """The table that a system exported, with the marks of one assignment filled in.
 
     Attributes:
         rows: all of its rows, the headings first.
-        marks: the cell of each student with a mark, before and after.
+        marks: the old and the new cell of each student with a mark.
         unknown: the students who have a result but are not in the table.
     """
 
@@ -47,7 +47,7 @@ class MarkTable:
 def mark_table(
     results: Sequence[Result], system: str, roster: Roster, kept_shares: Mapping[str, float | None] = {}
 ) -> MarkTable:
-    """Return the table of a system with the marks of one assignment.
+    """Return the table that a system exported, with the marks of one assignment filled in.
 
     If a submission is missing or was not graded, its cell is unchanged. Marks are scaled to the maximum in the table.
 
@@ -61,21 +61,21 @@ def mark_table(
         UsageError: the table lacks a column, or the results belong to several assignments.
     """
     assignment = one_assignment(results)
-    graded = {result.student: result for result in results if result.status is Status.GRADED}
+    graded_results = {result.student: result for result in results if result.status is Status.GRADED}
     shares = {
         name: result.percent / 100 * share
-        for name, result in graded.items()
+        for name, result in graded_results.items()
         if (share := kept_shares.get(name, 1.0)) is not None
     }
-    known = {student.id for student in roster.students}
-    unknown = tuple(sorted(result.student for result in results if result.student not in known))
-    max_points = next((result.max_score for result in graded.values()), 0.0)
+    known_students = {student.id for student in roster.students}
+    unknown = tuple(sorted(result.student for result in results if result.student not in known_students))
+    max_points = next((result.max_score for result in graded_results.values()), 0.0)
     rows, marks = SYSTEMS[system](roster, shares, max_points, assignment)
     return MarkTable(rows, marks, unknown)
 
 
 def one_assignment(results: Sequence[Result]) -> str:
-    """Return the assignment of results. Raises UsageError if they belong to several assignments."""
+    """Return the assignment to which all results belong. Raises UsageError if they belong to several."""
     assignments = {result.assignment for result in results}
     if len(assignments) != 1:
         raise UsageError(
@@ -84,10 +84,10 @@ def one_assignment(results: Sequence[Result]) -> str:
     return assignments.pop()
 
 
-Filled = tuple[Rows, dict[str, tuple[str, str]]]
+RowsAndMarks = tuple[Rows, dict[str, tuple[str, str]]]
 
 
-def _moodle(roster: Roster, shares: Mapping[str, float], max_points: float, assignment: str) -> Filled:
+def _moodle(roster: Roster, shares: Mapping[str, float], max_points: float, assignment: str) -> RowsAndMarks:
     # The last column is not used here, but Moodle rejects a worksheet without it.
     columns = _columns(roster, ("identifier", "grade", "maximum grade", "last modified (grade)"))
     grade, maximum = columns["grade"], columns["maximum grade"]
@@ -100,16 +100,16 @@ def _moodle(roster: Roster, shares: Mapping[str, float], max_points: float, assi
     return [list(roster.headings), *rows], marks
 
 
-def _canvas(roster: Roster, shares: Mapping[str, float], max_points: float, assignment: str) -> Filled:
+def _canvas(roster: Roster, shares: Mapping[str, float], max_points: float, assignment: str) -> RowsAndMarks:
     columns = _columns(roster, ("student", "id"))
     points = next((row for row in roster.rows if normalized(row[0]) == CANVAS_POINTS), None)
     title = normalized(assignment.replace("_", " "))
-    matching = [name for name in columns if title in name.replace("_", " ")]
-    if len(matching) > 1:
-        raise UsageError(f"{roster.path}: {len(matching)} columns are named after {assignment}: rename all but one")
-    if matching and points is None:
+    matches = [name for name in columns if title in name.replace("_", " ")]
+    if len(matches) > 1:
+        raise UsageError(f"{roster.path}: {len(matches)} columns are named after {assignment}: rename all but one")
+    if matches and points is None:
         raise UsageError(f"{roster.path}: the row `Points Possible` is missing; export the gradebook from Canvas again")
-    column = columns[matching[0]] if matching else None
+    column = columns[matches[0]] if matches else None
     name_columns = [index for name, index in columns.items() if name in CANVAS_NAMES]
     heading = assignment if column is None else roster.headings[column]
     if column is not None and points is not None:

@@ -42,11 +42,12 @@ COLUMNS = {
 FOLDER_NAME_KINDS = ("login", "number", "email", "identifier", "id", "name")
 # The kinds of identity that a text may be, the most certain first.
 ANY_KIND = ("login", "number", "sis id", "email", "identifier", "id", "github", "name")
-LATE = re.compile(r"\d \w+ late\b")  # in Moodle's status: "Submitted for grading - 1 day 2 hours late"
-PART = re.compile(r"(\d{1,9}) (year|week|day|hour|min|sec)s?\b")  # of a duration, as Moodle's `format_time` writes it
+LATE = re.compile(r"\d \w+ late\b")  # matches this status in Moodle: "Submitted for grading - 1 day 2 hours late"
+PART = re.compile(r"(\d{1,9}) (year|week|day|hour|min|sec)s?\b")  # a part of a duration from Moodle's `format_time`
+# The length of each unit in seconds.
 SECONDS = {"year": 31_536_000, "week": 604_800, "day": 86_400, "hour": 3_600, "min": 60, "sec": 1}
-MAX_TITLE_LINES = 3  # lines that may contain the headings; the first ones may be a title
-PARTICIPANT = "participant "  # Moodle's prefix of the number that it also puts in file names
+MAX_TITLE_LINES = 3  # first lines that may contain the headings, because a title may precede them
+PARTICIPANT = "participant "  # Moodle's prefix before a student's number, which is also in file names
 NOT_STUDENTS = ("points possible", "student, test")  # special rows of Canvas
 
 
@@ -79,13 +80,13 @@ class Roster:
         """Return the student identified by the first kind of key that matches exactly one student, or None."""
         for kind in dict.fromkeys(kind for kind, _ in keys):
             keys_of_kind = {(kind, normalized(value)) for other, value in keys if other == kind}
-            matching = [student for student in self.students if keys_of_kind & student.keys]
-            if len(matching) == 1:
-                return matching[0]
+            matching_students = [student for student in self.students if keys_of_kind & student.keys]
+            if len(matching_students) == 1:
+                return matching_students[0]
         return None
 
     def named(self, text: str) -> Student | None:
-        """Return the student that a text identifies by any column of the roster, or None if it is ambiguous."""
+        """Return the only student that a text identifies by any column of the roster, or None."""
         return self.find(tuple((kind, text) for kind in ANY_KIND))
 
 
@@ -110,8 +111,8 @@ def read_roster(path: Path) -> Roster:
     headings, *rows = lines[is_heading.index(True) if any(is_heading) else 0 :]
     kinds = _kinds(headings)
     if not set(kinds) & set(FOLDER_NAME_KINDS):
-        known = ", ".join(sorted(COLUMNS))
-        raise UsageError(f"{path}: no column identifies the students; the known headings are {known}")
+        known_headings = ", ".join(sorted(COLUMNS))
+        raise UsageError(f"{path}: no column identifies the students; the known headings are {known_headings}")
     students = [student for index, row in enumerate(rows) if (student := _student(kinds, row, index)) is not None]
     names = [student.id for student in students]
     duplicates = sorted({name for name in names if names.count(name) > 1})

@@ -24,8 +24,8 @@ from autograder.result.class_folder import SUMMARY
 from autograder.result.model import write_atomically
 
 MIN_MATCH_TOKENS = 50  # about three lines; shorter passages are ignored
-MAX_CHARACTERS = 100_000  # of a text: about 2,500 lines, which take 0.5 s and 50 MiB
-MAX_PAIRS = 100  # whose texts are on the page
+MAX_CHARACTERS = 100_000  # compared per text: about 2,500 lines, which take 0.5 s and 50 MiB
+MAX_PAIRS = 100  # pairs whose texts are shown on the page
 
 Names = tuple[str, ...]
 Fingerprints = Mapping[Names, CodeFingerprint]
@@ -87,7 +87,7 @@ def compare(
         fingerprint.token_coverage = get_token_coverage(positions, MIN_MATCH_TOKENS, len(fingerprint.filtered_code))
     with_own_code = {names: fingerprint for names, fingerprint in fingerprints.items() if fingerprint.hashes}
     links = sorted(_links(with_own_code, min_share), key=lambda pair: (-max(pair.shares), pair.names))
-    groups = _with_texts(_joined(links), with_own_code)
+    groups = _with_texts(_join(links), with_own_code)
     return Comparison(groups, tuple(name for names in fingerprints if names not in with_own_code for name in names))
 
 
@@ -114,8 +114,8 @@ def _links(fingerprints: Fingerprints, min_share: float) -> Iterable[Pair]:
             yield Pair((first, second), (min(1.0, shares[0]), min(1.0, shares[1])))
 
 
-def _joined(links: Iterable[Pair]) -> list[Group]:
-    """Join pairs into groups, most similar first. A pair that is already in one group is omitted."""
+def _join(links: Iterable[Pair]) -> list[Group]:
+    """Join pairs into groups, most similar first. A pair whose students are already in one group is omitted."""
     group_of: dict[str, Group] = {}
     for link in links:
         first, second = (group_of.get(names[0], Group(names, ())) for names in link.names)
@@ -128,12 +128,12 @@ def _joined(links: Iterable[Pair]) -> list[Group]:
 
 def _with_texts(groups: Sequence[Group], fingerprints: Fingerprints) -> tuple[Group, ...]:
     """Return the groups in order, with the texts of the most similar pairs."""
-    ranked = sorted((pair for group in groups for pair in group.pairs), key=_rank)
-    with_texts = {pair: _with_highlights(pair, fingerprints) for pair in ranked[:MAX_PAIRS]}
-    ordered = sorted(groups, key=lambda group: min(map(_rank, group.pairs)))
+    ranked_pairs = sorted((pair for group in groups for pair in group.pairs), key=_rank)
+    with_texts = {pair: _with_highlights(pair, fingerprints) for pair in ranked_pairs[:MAX_PAIRS]}
+    ordered_groups = sorted(groups, key=lambda group: min(map(_rank, group.pairs)))
     return tuple(
         Group(tuple(sorted(group.names)), tuple(with_texts.get(pair, pair) for pair in sorted(group.pairs, key=_rank)))
-        for group in ordered
+        for group in ordered_groups
     )
 
 
@@ -142,7 +142,7 @@ def _rank(pair: Pair) -> tuple[float, tuple[Names, Names]]:
 
 
 def _with_highlights(pair: Pair, fingerprints: Fingerprints) -> Pair:
-    all_names = pair.names[0] + pair.names[1]  # students with the same text
+    all_names = pair.names[0] + pair.names[1]  # the key in `fingerprints` if all of them have the same text
     first, second = (
         fingerprints[all_names] if all_names in fingerprints else fingerprints[names] for names in pair.names
     )
@@ -159,7 +159,7 @@ def write_page(comparison: Comparison, out: Path) -> Path:
 
 
 def _dense(text: str) -> str:
-    """Return a text without empty lines, because the lexer's time is quadratic in consecutive ones."""
+    """Return a text without empty lines, because the lexer's time is quadratic in the number of consecutive ones."""
     return "\n".join(line for line in text.splitlines() if line.strip())
 
 

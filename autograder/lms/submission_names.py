@@ -32,29 +32,28 @@ from autograder.grade.batch import student_of
 from autograder.lms.roster import ANY_KIND
 from autograder.submission.intake.ignored import is_ignored
 
-METADATA = "submission_metadata.yml"  # of Gradescope
+METADATA = "submission_metadata.yml"  # Gradescope's list of submissions
 
 # Files that a system adds to a download for the instructor.
-ADDED = {
+ADDED_FILES = {
     "brightspace": frozenset(("index.html",)),
     "sakai": frozenset(("grades.csv", "grades.xls", "grades.xlsx")),
 }
 
-# Follows the student's name in Moodle. It may also occur in a student's name or a file name.
+# This follows the student's name in Moodle. It may also occur in a student's name or a file name.
 MOODLE = re.compile(r"_(?P<id>\d+)_assignsubmission_(?P<kind>[a-z]+)(?=_|\Z)")
 CANVAS = re.compile(r"(?P<name>[^_/]+)(?P<late>_LATE)?_(?P<id>\d+)_(?P<file_id>\d+)_(?P<file>.+)", re.DOTALL)
-BLACKBOARD = re.compile(
-    r"(?P<head>.+?)_attempt_(?P<time>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)", re.DOTALL
-)  # a receipt has no file
+# The name of a receipt has no `file`.
+BLACKBOARD = re.compile(r"(?P<head>.+?)_attempt_(?P<time>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)", re.DOTALL)
 BRIGHTSPACE = re.compile(r"\d+-\d+ - ")
 DATE = re.compile(
     r" - (?P<month>[A-Z][a-z]{2}) (?P<day>\d\d?), (?P<year>\d{4}) "
     r"(?P<hour>\d\d?)(?P<minute>\d\d)(?: (?P<half>[AP]M))?(?= - |\Z)"
 )
 MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
-ATTACHMENTS, FEEDBACK = "Submission attachment(s)", "Feedback Attachment(s)"  # of Sakai
+ATTACHMENTS, FEEDBACK = "Submission attachment(s)", "Feedback Attachment(s)"  # folders of Sakai
 MAX_LINE = 1000  # characters read from a line
-TIME, TEXT = "timestamp.txt", "_submissionText.html"
+TIME, TEXT = "timestamp.txt", "_submissionText.html"  # files of Sakai
 
 # Canvas's name for a file that was submitted again.
 VERSION = re.compile(r"(?P<stem>.+)-(?P<version>\d{1,3})(?P<ending>(?:\.[^.]+)?)", re.DOTALL)
@@ -69,9 +68,9 @@ class DownloadedItem:
     Attributes:
         path: its path.
         name: the name that the student gave it; empty if it is the name of the path.
-        doubt: the reason if the student is ambiguous, or an empty string.
+        doubt: the reason why it is unclear whose it is, or an empty string.
         keys: identities of the student, for `Roster.find`.
-        order: sort key for a student's items; a larger one is newer.
+        order: a key that sorts the items of a student; newer items have larger keys.
         late: whether the system marks it as late.
         is_submission: whether it is a submitted file, not a text that was typed into the system.
         is_receipt: whether it is a file that the system writes for each attempt, even without a submitted file.
@@ -105,8 +104,8 @@ def read_names(folder: Path) -> list[DownloadedItem]:
     """Parse the names in a folder, with an item for each member of a group and none for files that a system added."""
     children = [child for child in sorted(folder.iterdir()) if not is_ignored(child.name)]
     items = _without_doubtful_groups([item for child in children for item in _read_name(child)])
-    added = frozenset[str]().union(*(ADDED.get(item.system, ()) for item in items))
-    return [item for item in items if item.path.name not in added]
+    added_names = frozenset[str]().union(*(ADDED_FILES.get(item.system, ()) for item in items))
+    return [item for item in items if item.path.name not in added_names]
 
 
 def _read_name(path: Path) -> list[DownloadedItem]:
@@ -200,9 +199,8 @@ def _brightspace_keys(name: str) -> IdentityKeys:
 def _members(path: Path) -> list[IdentityKeys]:
     """Return the keys of each group member in a Sakai name: `Doe, Jane(jdoe3); Roe, Bob(broe)`."""
     member_names = path.name if path.is_dir() else path.name.partition(f"_{ATTACHMENTS}_")[0].removesuffix(f"_{TEXT}")
-    if (
-        not path.is_dir() and path.name.count(f"_{ATTACHMENTS}_") > 1
-    ):  # one is part of a student's name or a file's name
+    # If the folder's name occurs twice, one occurrence is part of a student's name or a file's name.
+    if not path.is_dir() and path.name.count(f"_{ATTACHMENTS}_") > 1:
         return []
     members: list[IdentityKeys] = []
     for entry in member_names.split("; "):
@@ -228,16 +226,16 @@ def _without_doubtful_groups(items: list[DownloadedItem]) -> list[DownloadedItem
 
 
 def _read_sakai(path: Path) -> list[DownloadedItem]:
-    """Return the submission in a student's Sakai folder, or in a file without folders, still without keys."""
+    """Return the submission in a student's Sakai folder or in a file without folders, as an item without keys."""
     if not path.is_dir():
         file = path.name.partition(f"_{ATTACHMENTS}_")[2]
         return [DownloadedItem(path, (), is_submission=bool(file), name=file, is_receipt=not file, system="sakai")]
-    # In another language, Sakai gives the folder another name.
+    # The name of this folder depends on the language of Sakai.
     folders = [child for child in sorted(path.iterdir()) if child.is_dir() and child.name != FEEDBACK]
-    filled = [child for child in folders if any(child.iterdir())]
-    if len(filled) == 1:
-        return [DownloadedItem(filled[0], (), name=path.name, system="sakai")]
-    if not filled and not (path / TIME).is_file():
+    filled_folders = [child for child in folders if any(child.iterdir())]
+    if len(filled_folders) == 1:
+        return [DownloadedItem(filled_folders[0], (), name=path.name, system="sakai")]
+    if not filled_folders and not (path / TIME).is_file():
         return []
     return [DownloadedItem(path, (), is_submission=False, system="sakai")]
 
@@ -266,7 +264,7 @@ def resubmitted(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:
 
 
 def read_metadata(folder: Path) -> tuple[list[DownloadedItem], list[tuple[str, str]]]:
-    """Return the items of a Gradescope download, one for each group member, and pairs (name, reason) of the others.
+    """Return the items of a Gradescope download, one for each group member, and pairs (name, reason) for the rest.
 
     Raises UsageError if the list of submissions cannot be read.
     """

@@ -57,7 +57,7 @@ def read_rows(
         raise UsageError(f"{path}: cannot be read as CSV in UTF-8: {error}") from None
     if not lines:
         raise UsageError(f"{path}: the table is empty; its columns are {', '.join((STUDENT, *required))}")
-    (heading_row, number), *rest = lines
+    (heading_row, number), *student_lines = lines
     headings = [normalized(cell) for cell in heading_row]
     for name in (STUDENT, *required):
         if headings.count(name) != 1:
@@ -68,12 +68,12 @@ def read_rows(
             )
     if one_of and not set(one_of) & set(headings):
         raise UsageError(f"{path}, line {number}: it needs one of the columns {', '.join(one_of)}")
-    rows = [_row(headings, cells, f"{path}, line {number}", find_student) for cells, number in rest]
-    seen: dict[str, Row] = {}
+    rows = [_row(headings, cells, f"{path}, line {number}", find_student) for cells, number in student_lines]
+    by_student: dict[str, Row] = {}
     for row in rows:
-        if row.student in seen:
-            raise row.error(f"{row.student} is also in {seen[row.student].location}: remove one of the two rows")
-        seen[row.student] = row
+        if row.student in by_student:
+            raise row.error(f"{row.student} is also in {by_student[row.student].location}: remove one of the two rows")
+        by_student[row.student] = row
     return rows
 
 

@@ -56,7 +56,7 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import one of the functions that notebooks use."""
+    """Import a function that notebooks use when it is first needed."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     function = globals()[name] = getattr(importlib.import_module(f"{__name__}.{_MODULES[name]}"), name)

@@ -35,14 +35,14 @@ from autograder.submission.reading import reading
 if TYPE_CHECKING:
     from autograder.run.workspace import Workspace
 
-SEED = 1  # for the inputs of visible checks
-NEEDS_ITS_NOTEBOOK = "The visible checks need the executed notebook: run check(...) in it."
+SEED = 1  # the seed of the inputs of visible checks, the same for all students
+NEEDS_NOTEBOOK = "The visible checks need the executed notebook: run check(...) in it."
 
 
 def main() -> None:
-    """Run the request in the file from the command line."""
+    """Run the request in the file that the command line names, and write the reply."""
     request = json.loads(Path(sys.argv[1]).read_text())
-    line.take(Connection(int(sys.argv[2])))
+    line.set_line(Connection(int(sys.argv[2])))
     restore_sigint()
     ros = activate()
     from autograder.run.workspace import Workspace  # imports rclpy, so ROS must be active
@@ -53,7 +53,7 @@ def main() -> None:
     domain = 0 if current_isolation() is Isolation.BUBBLEWRAP else Domain().number
     workspace = Workspace(scratch / "ws", ros, home, domain=domain)
     try:
-        _fill(workspace, Path(request["source"]), request["arguments"])
+        _copy_packages(workspace, Path(request["source"]), request["arguments"])
     except StudentError as error:
         reply: dict[str, Any] = {"diagnosis": asdict(error.diagnosis), "checks": ()}
     else:
@@ -61,14 +61,14 @@ def main() -> None:
     write_json(out / REPLY_FILE, reply)
 
 
-def _fill(workspace: Workspace, source: Path, arguments: dict[str, Any]) -> None:
-    """Put a source tree into the workspace, or the packages of an answer as it was handed in."""
+def _copy_packages(workspace: Workspace, source: Path, arguments: dict[str, Any]) -> None:
+    """Copy a source tree, or the packages of a submission, to the workspace."""
     if source.is_dir():
         shutil.copytree(source, workspace.root / "src", ignore=course_paths.NOT_COPIED)
         return
     packages = intake.read_submission(source, arguments["assignment"]).packages
     if packages is None:
-        raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, NEEDS_ITS_NOTEBOOK))
+        raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, NEEDS_NOTEBOOK))
     with reading("Your submission"):
         intake.write_tree(packages, workspace.root / "src")
 
@@ -110,17 +110,17 @@ def _drive(
         ) as harness:
 
             def publish(state: State) -> bool:
-                """Publish the messages planned for the end of this step, like the scans. Never end the drive."""
+                """Publish the messages that are planned for the end of this step. Never end the drive."""
                 for topic, message in messages_at(plan, types, state.time_ns + harness.tick_ns).items():
                     harness.publish(topic, message)
                 return False
 
-            driven = drive(harness, from_json(simulation), seconds, until=publish)
+            result = drive(harness, from_json(simulation), seconds, until=publish)
     except StudentError as error:
         return {"diagnosis": asdict(error.diagnosis)}
-    driven.recording.save(out / RECORDING)
-    commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in driven.commands]
-    return {"diagnosis": asdict(OK), "output": driven.output, "commands": commands}
+    result.recording.save(out / RECORDING)
+    commands = [[c.seconds, c.message.linear.x, c.message.angular.z] for c in result.commands]
+    return {"diagnosis": asdict(OK), "output": result.output, "commands": commands}
 
 
 def _check(
@@ -131,9 +131,9 @@ def _check(
     part: str,
     first: list[str],
 ) -> dict[str, Any]:
-    """Run the checks of a chapter, or of the exercise called `part`. Those with ids in `first` run before the others.
+    """Run the checks of a chapter, or of the exercise called `part`.
 
-    Their results are written to `out` immediately.
+    The checks with ids in `first` run before the others, and their results are written to `out` immediately.
     """
     from autograder.building.build import build_workspace
     from autograder.building.colcon import StoppedBuildError
@@ -146,17 +146,17 @@ def _check(
 
     suite = suites.visible(assignment)
     all_exercises = [structure(Exercise, exercise) for exercise in exercises]
-    matching = [exercise for exercise in all_exercises if exercise.name == part]
-    selected = (
-        checks_of(matching[0], all_exercises, suite.checks) if matching else tuple(check.id for check in suite.checks)
+    matches = [exercise for exercise in all_exercises if exercise.name == part]
+    selected_checks = (
+        checks_of(matches[0], all_exercises, suite.checks) if matches else tuple(check.id for check in suite.checks)
     )
     results: dict[str, CheckResult] = {}
 
     def reply(reason: Diagnosis, ids: Collection[str], *, lasting: bool = True) -> dict[str, Any]:
-        """Return the results of checks, and of their failed dependencies."""
+        """Return a reply with the results of these checks, and of all checks that did not pass."""
         not_passed = {name for name, result in results.items() if result.outcome is not Outcome.PASSED}
-        reported = [check for check in suite.checks if check.id in ids or check.id in not_passed]
-        lines = [results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED) for check in reported]
+        reported_checks = [check for check in suite.checks if check.id in ids or check.id in not_passed]
+        lines = [results.get(check.id) or CheckResult.of(check, Outcome.NOT_CHECKED) for check in reported_checks]
         return {
             "diagnosis": asdict(reason),
             "checks": [asdict(line) for line in lines],
@@ -165,12 +165,12 @@ def _check(
             "lasting": lasting,
         }
 
-    early = [name for name in selected if name in first]
-    others = [name for name in selected if name not in first]
+    early_checks = [name for name in selected_checks if name in first]
+    other_checks = [name for name in selected_checks if name not in first]
     try:
         build = build_workspace(workspace, suite.packages, may_fail=suite.build_may_fail)
         diagnosis = build.diagnosis
-        for ids in filter(None, (early, others)):
+        for ids in filter(None, (early_checks, other_checks)):
             is_whole_suite = len(ids) == len(suite.checks)
             options = Options(only=() if is_whole_suite else suite.with_dependencies(*ids))
             plugin = GradingPlugin(workspace, SEED, Artifacts(out), build.diagnoses, options)
@@ -179,11 +179,11 @@ def _check(
                 raise GraderError("\n".join(plugin.failures))
             results |= plugin.results
             diagnosis = plugin.diagnosis if diagnosis is OK else diagnosis
-            if ids is early and others:
-                write_json(out / EARLY_FILE, reply(diagnosis, early))
+            if ids is early_checks and other_checks:
+                write_json(out / EARLY_FILE, reply(diagnosis, early_checks))
     except StudentError as error:
-        return reply(error.diagnosis, selected, lasting=not isinstance(error, StoppedBuildError))
-    return reply(diagnosis, selected)
+        return reply(error.diagnosis, selected_checks, lasting=not isinstance(error, StoppedBuildError))
+    return reply(diagnosis, selected_checks)
 
 
 VERBS: dict[str, Callable[..., dict[str, Any]]] = {"drive": _drive, "check": _check}

@@ -32,7 +32,7 @@ COLOURS = {Outcome.PASSED: "#009e73", Outcome.FAILED: TROUBLE, Outcome.NOT_CHECK
 
 @dataclass(frozen=True)
 class Part:
-    """A chapter to check, or one of its exercises: its name, and all exercises of the chapter."""
+    """What to check: a whole chapter (`name` is empty), or one of its `exercises`."""
 
     assignment: str
     name: str = ""
@@ -41,7 +41,7 @@ class Part:
     @property
     def later(self) -> tuple[str, ...]:
         """The files that only cells after this exercise write."""
-        return next((each.later for each in self.exercises if each.name == self.name), ())
+        return next((exercise.later for exercise in self.exercises if exercise.name == self.name), ())
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,8 @@ class CheckReport:
 
     `trouble` is the reason why the package could not be built or the node could not run. `later` are the titles of the
     checks that run after submission. `notices` are sentences about files that differ from their cells. `part` is the
-    checked part of the chapter, or empty for the whole one. `since` is the time of the stored run, or empty if the
-    checks were run again.
+    name of the exercise that was checked; it is empty for the whole chapter. `since` is the time of the stored run; it
+    is empty if the checks were run now.
     """
 
     assignment: str
@@ -68,20 +68,20 @@ class CheckReport:
 
     @property
     def shown_trouble(self) -> Notice | None:
-        """The trouble, or None if a part passed in spite of it: it concerns a package of another exercise."""
+        """The trouble; None if all checks of an exercise passed, because then another exercise's package causes it."""
         return None if self.part and self.passed else self.trouble
 
     @property
     def summary(self) -> str:
         """A sentence with the number of passed checks."""
         passed_count = sum(line.outcome is Outcome.PASSED for line in self.lines)
-        checked = ", ".join(filter(None, (self.assignment, self.part)))
-        unchanged = f" {UNCHANGED.format(since=self.since)}" if self.since else ""
-        return f"{checked}: {passed_count} of {len(self.lines)} visible checks passed.{unchanged}"
+        checked_part = ", ".join(filter(None, (self.assignment, self.part)))
+        unchanged_note = f" {UNCHANGED.format(since=self.since)}" if self.since else ""
+        return f"{checked_part}: {passed_count} of {len(self.lines)} visible checks passed.{unchanged_note}"
 
     @property
     def causes(self) -> tuple[Cause, ...]:
-        """The checks, each with the checks that did not pass because of it."""
+        """The checks, each with the other checks that did not pass because of it."""
         return causes(self.lines, "" if self.trouble is None else self.trouble.sentence)
 
     def __repr__(self) -> str:
@@ -89,13 +89,13 @@ class CheckReport:
         parts += [] if self.shown_trouble is None else [repr(self.shown_trouble), ""]
         for cause in self.causes:
             line = cause.check
-            parts.append(_head(line))
+            parts.append(_headline(line))
             parts += [f"    {line.message}"] if line.message else []
             if line.outcome is Outcome.FAILED:
                 parts += [f"    hint {number}: {hint}" for number, hint in enumerate(line.hints, 1)]
                 parts += [f"    read: {line.doc}"] if line.doc else []
             parts += (
-                [f"    {FAILED_AS_WELL}", *(f"    {_head(consequence)}" for consequence in cause.failed)]
+                [f"    {FAILED_AS_WELL}", *(f"    {_headline(consequence)}" for consequence in cause.failed)]
                 if cause.failed
                 else []
             )
@@ -109,7 +109,7 @@ class CheckReport:
         notices = "".join(Notice(notice)._repr_html_() for notice in self.notices)
         trouble = notices + ("" if self.shown_trouble is None else self.shown_trouble._repr_html_())
         colour = COLOURS[Outcome.PASSED] if self.passed else INFO
-        rows = "".join(_cause(cause) for cause in self.causes)
+        rows = "".join(_cause_html(cause) for cause in self.causes)
         if self.passed and self.later:
             titles = "".join(f"<li>{html.escape(title)}</li>" for title in self.later)
             heading = HIDDEN_CHECKS_HEADING.format(count=len(self.later))
@@ -149,22 +149,24 @@ def check(
 
 
 def part_of(assignment: str, exercise: int | None, step: int | None, question: int | None) -> Part:
-    """Return the part of a chapter with the given number of an exercise, step or question, or the whole chapter.
+    """Return the exercise, step or question with the given number, or the whole chapter if no number is given.
 
     Raises:
         UsageError: the chapter or part does not exist, or two parts are given.
     """
-    if assignment not in (known := suites.checkable_assignments()):
-        raise UsageError(f"{assignment!r} has no visible checks; choose one of: {', '.join(known)}")
+    if assignment not in (known_assignments := suites.checkable_assignments()):
+        raise UsageError(f"{assignment!r} has no visible checks; choose one of: {', '.join(known_assignments)}")
     numbers = zip(KINDS, (exercise, step, question), strict=True)
-    given = [(kind, number) for kind, number in numbers if number is not None]
-    if not given:
+    requested_parts = [(kind, number) for kind, number in numbers if number is not None]
+    if not requested_parts:
         return Part(assignment)
-    if len(given) > 1:
-        listed = " and ".join(f"{kind} {number}" for kind, number in given)
-        raise UsageError(f"{listed} are two parts of {assignment}: ask for one at a time, or for the whole chapter")
+    if len(requested_parts) > 1:
+        listed_parts = " and ".join(f"{kind} {number}" for kind, number in requested_parts)
+        raise UsageError(
+            f"{listed_parts} are two parts of {assignment}: ask for one at a time, or for the whole chapter"
+        )
     available = exercises(assignment)
-    return Part(assignment, find_exercise(assignment, available, *given[0]).name, available)
+    return Part(assignment, find_exercise(assignment, available, *requested_parts[0]).name, available)
 
 
 def run_part(
@@ -182,23 +184,23 @@ def run_part(
         workspace: a colcon workspace.
         fresh: whether to run the checks even if nothing has changed.
         first: ids of checks to run before the others.
-        early: called with the report of those while the others run.
+        early: a function that is called with the report of the checks in `first` while the others run.
 
     Raises:
         UsageError: the workspace does not exist.
         GraderError: the check itself failed.
     """
-    stored = load(workspace, part.assignment, part.name)
-    reads = () if stored is None else stored.reads
+    stored_result = load(workspace, part.assignment, part.name)
+    reads = () if stored_result is None else stored_result.reads
     inputs = current_inputs(part.assignment, workspace / "src", reads)
-    if stored is not None and inputs is not None and stored.digest == inputs.digest and not fresh:
-        return _report(part, workspace, stored.reply, stored.since)
+    if stored_result is not None and inputs is not None and stored_result.digest == inputs.digest and not fresh:
+        return _make_report(part, workspace, stored_result.reply, stored_result.since)
 
     def report_early(reply: dict[str, Any]) -> None:
         if early is not None:
-            early(_report(replace(part, name=FAILED_BEFORE), workspace, reply))
+            early(_make_report(replace(part, name=FAILED_BEFORE), workspace, reply))
 
-    arguments = {"exercises": [asdict(each) for each in part.exercises], "part": part.name, "first": [*first]}
+    arguments = {"exercises": [asdict(exercise) for exercise in part.exercises], "part": part.name, "first": [*first]}
     with run_in_worker("check", workspace, early=report_early, assignment=part.assignment, **arguments) as (reply, _):
         created_at = datetime.now().isoformat(timespec="seconds")
     is_unchanged = inputs is not None and inputs == current_inputs(part.assignment, workspace / "src", reads)
@@ -210,11 +212,11 @@ def run_part(
         part.name,
         StoredResult(digest if new_reads == reads else "", created_at, new_reads, reply),
     )
-    return _report(part, workspace, reply)
+    return _make_report(part, workspace, reply)
 
 
-def _report(part: Part, workspace: Path, reply: dict[str, Any], since: str = "") -> CheckReport:
-    """Return the report of a worker's reply. The cells are compared with the current files."""
+def _make_report(part: Part, workspace: Path, reply: dict[str, Any], since: str = "") -> CheckReport:
+    """Return the report of a worker's reply, with notices about current files that differ from their cells."""
     diagnosis, trouble = reply["diagnosis"], None
     if diagnosis["kind"] != "ok":
         trouble = Notice(diagnosis["sentence"], diagnosis["detail"], TROUBLE)
@@ -225,15 +227,15 @@ def _report(part: Part, workspace: Path, reply: dict[str, Any], since: str = "")
     return CheckReport(part.assignment, lines, trouble, tuple(later), notices, part.name, since)
 
 
-def _head(line: CheckResult) -> str:
+def _headline(line: CheckResult) -> str:
     return f"{SYMBOLS[line.outcome]} {line.outcome.text:<11} {line.title}"
 
 
-def _cause(cause: Cause) -> str:
+def _cause_html(cause: Cause) -> str:
     """Return the HTML of a check, with its consequences folded below it."""
-    row = _row(cause.check)
+    row = _row_html(cause.check)
     if cause.failed:
-        rows = "".join(map(_row, cause.failed))
+        rows = "".join(map(_row_html, cause.failed))
         row += f"<details {INDENT}><summary>{FAILED_AS_WELL} {len(cause.failed)}</summary>{rows}</details>"
     if cause.unnamed:
         titles = "".join(f"<li>{html.escape(title)}</li>" for title in cause.unnamed)
@@ -241,7 +243,7 @@ def _cause(cause: Cause) -> str:
     return row + (f"<div {INDENT}>{html.escape(cause.not_checked)}</div>" if cause.not_checked else "")
 
 
-def _row(line: CheckResult) -> str:
+def _row_html(line: CheckResult) -> str:
     # The colour is beside the words, because no text colour is readable on both white and black.
     style = f"border-left: .5em solid {COLOURS[line.outcome]}; padding-left: .4em"
     mark = f'<span style="{style}">{SYMBOLS[line.outcome]} {line.outcome.text}</span>'

@@ -36,18 +36,18 @@ FAULTS = {
     "nan": Faults(sectors=(DeadSector(-0.05, 0.05),)),
     "dead": Faults(dead=(Window(10.0),)),
 }
-RADIUS = 0.18  # m
-WIDTH, HEIGHT = 6.0, 4.9  # inches of a picture
+RADIUS = 0.18  # m; the robot's radius
+WIDTH, HEIGHT = 6.0, 4.9  # inches; the size of one picture in `side_by_side`
 
 Parameters = Mapping[str, object] | str | Path
-"""Values by name, or the path of a parameter file, as a launch file's Node takes them."""
+"""Values by name, or the path of a parameter file. The `Node` of a launch file also takes both."""
 
 
 @dataclass(frozen=True, eq=False)
 class DriveReport:
     """A drive. It is shown in the player, or as a picture of the robot's track if the player is not available.
 
-    The player plays once when it is seen. A drive with a collision is shown at its first collision instead.
+    The player plays once when it becomes visible. If the robot collides, it shows the first collision instead.
 
     Attributes:
         recording: the run: times, poses, scans, collisions.
@@ -131,7 +131,7 @@ def drive(
     """
     if grading():
         return Notice("The robot stays in its dock while the notebook is graded.")
-    robot = RobotSpec(radius=RADIUS, faults=_faults(faults))
+    robot = RobotSpec(radius=RADIUS, faults=_resolve_faults(faults))
     world = world if isinstance(world, World) else load(course_paths.world_path(world))
     simulation = Simulation(world, (robot,), seed=seed)
     with run_in_worker(
@@ -142,7 +142,7 @@ def drive(
         simulation=to_json(simulation),
         seconds=float(seconds),
         options=["-r", f"__node:={name}"] if name else [],
-        parameter_file="" if parameters is None else _parameter_file(parameters),
+        parameter_file="" if parameters is None else _parameter_file_text(parameters),
         published=None if each_step is None else plan_messages(each_step, float(seconds), Path(workspace)),
     ) as (reply, folder):
         diagnosis = reply["diagnosis"]
@@ -156,7 +156,7 @@ def side_by_side(drives: Mapping[str, DriveReport | Notice]) -> Picture | Notice
     """Show the tracks of drives next to each other, each with its title, or the first notice among them.
 
     Args:
-        drives: results of `drive` by their titles, at least one.
+        drives: one or more results of `drive`, by their titles.
     """
     from matplotlib.figure import Figure
 
@@ -176,7 +176,7 @@ def side_by_side(drives: Mapping[str, DriveReport | Notice]) -> Picture | Notice
     return Picture(figure, " ".join(alts))
 
 
-def _faults(faults: str | Faults | None) -> Faults:
+def _resolve_faults(faults: str | Faults | None) -> Faults:
     if faults is None:
         return Faults()
     if isinstance(faults, Faults):
@@ -186,7 +186,7 @@ def _faults(faults: str | Faults | None) -> Faults:
     return FAULTS[faults]
 
 
-def _parameter_file(parameters: Parameters) -> str:
+def _parameter_file_text(parameters: Parameters) -> str:
     """Return the text of a parameter file with these values."""
     if isinstance(parameters, Mapping):
         try:

@@ -33,9 +33,9 @@ class Exercise:
         kind: its kind in the notebook, one of `KINDS`.
         number: its number in the heading.
         title: the rest of the heading.
-        sentences: the ids of the requirements in it.
+        sentences: the ids of the requirements that it contains.
         groups: the groups of checks that the notebook's objectives assign only to this exercise.
-        later: the files that only cells after it write, such as `ws/src/robot/setup.py`.
+        later: the files that only cells after this exercise write, such as `ws/src/robot/setup.py`.
     """
 
     kind: str
@@ -60,55 +60,62 @@ def exercises(assignment: str) -> tuple[Exercise, ...]:
     path = course_paths.source_notebook(assignment)
     try:
         notebook = json.loads(path.read_bytes())
-        return tuple(_read(notebook["cells"], notebook["metadata"].get("course", {}).get("objectives", ())))
+        return tuple(_read_exercises(notebook["cells"], notebook["metadata"].get("course", {}).get("objectives", ())))
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         hint = "save it in JupyterLab, or check the whole chapter"
         raise UsageError(f"{path} cannot be read as a notebook: {hint}") from None
 
 
 def find_exercise(assignment: str, available: Sequence[Exercise], kind: str, number: int) -> Exercise:
-    """Return an exercise of a chapter. A UsageError lists the existing ones."""
+    """Return an exercise of a chapter.
+
+    Raises:
+        UsageError: the chapter has no such exercise. The message lists the existing ones.
+    """
     for exercise in available:
         if (exercise.kind, exercise.number) == (kind, number):
             return exercise
     in_order = sorted(available, key=lambda exercise: (exercise.kind, exercise.number))
-    known = ", ".join(f"{each.name} ({each.title})" if each.title else each.name for each in in_order)
-    raise UsageError(f"{assignment} has no {kind} {number}; it has: {known or 'no exercise with a number'}")
+    known_exercises = ", ".join(f"{entry.name} ({entry.title})" if entry.title else entry.name for entry in in_order)
+    raise UsageError(f"{assignment} has no {kind} {number}; it has: {known_exercises or 'no exercise with a number'}")
 
 
 def checks_of(exercise: Exercise, available: Sequence[Exercise], checks: Sequence[Check]) -> tuple[str, ...]:
     """Return the ids of the checks that belong to an exercise, in the order of the suite.
 
-    If all requirements of a group of checks are in one exercise, the group belongs to it. If they are in several, the
-    notebook's objectives decide. If these assign the group to no or several exercises, each check belongs to the last
-    exercise with one of its requirements. A check without a requirement in an exercise belongs to every exercise.
+    If all requirements of a group of checks are in one exercise, the group belongs to that exercise. If they are in
+    several, the notebook's objectives decide. If the objectives do not assign the group to exactly one exercise, each
+    check belongs to the last exercise that contains one of its requirements. A check belongs to every exercise if no
+    exercise contains one of its requirements.
     """
     return tuple(check.id for check in checks if _exercise_of(check, available, checks) in (None, exercise))
 
 
 def _exercise_of(check: Check, available: Sequence[Exercise], checks: Sequence[Check]) -> Exercise | None:
     """Return the exercise of a check, or None if no exercise contains one of its requirements."""
-    group = [each for other in checks if other.group == check.group for each in _exercises_covering(other, available)]
-    if len(set(group)) > 1:
-        assigned = next((each for each in available if check.group in each.groups), None)
-        return assigned or next(reversed(_exercises_covering(check, available)), None)
+    group_exercises = [
+        exercise for other in checks if other.group == check.group for exercise in _exercises_covering(other, available)
+    ]
+    if len(set(group_exercises)) > 1:
+        assigned_exercise = next((exercise for exercise in available if check.group in exercise.groups), None)
+        return assigned_exercise or next(reversed(_exercises_covering(check, available)), None)
     return next(iter(_exercises_covering(check, available)), None)
 
 
 def _exercises_covering(check: Check, available: Sequence[Exercise]) -> list[Exercise]:
-    return [each for each in available if not set(each.sentences).isdisjoint(check.covers)]
+    return [exercise for exercise in available if not set(exercise.sentences).isdisjoint(check.covers)]
 
 
-def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]:
-    """Yield the exercises in cells. `objectives` come from the notebook's metadata."""
-    cells_of_group: dict[str, set[str]] = {}  # the cells of the exercises that a group tests
+def _read_exercises(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]:
+    """Yield the exercises in these cells. `objectives` are those in the notebook's metadata."""
+    cells_of_group: dict[str, set[str]] = {}  # for each group, the ids of the cells with the exercises that it tests
     for objective in objectives:
         for group in objective["groups"]:
             cells_of_group.setdefault(group, set()).add(objective["exercise"])
     by_name: dict[str, Exercise] = {}
     sentences: dict[str, dict[str, Any]] = {}
-    files: list[str] = []  # that cells write, in the order of the notebook
-    file_counts: dict[str, int] = {}  # the number of files that are written up to the end of an exercise
+    files: list[str] = []  # the files that cells write, in the order of the notebook
+    file_counts: dict[str, int] = {}  # for each exercise, how many files the cells up to its end write
     level, current = 0, ""
     for cell in cells:
         for depth, text in _headings(cell):
@@ -124,11 +131,11 @@ def _read(cells: Sequence[Any], objectives: Sequence[Any]) -> Iterator[Exercise]
         if current:
             sentences.setdefault(current, {}).update(cell["metadata"].get("course", {}).get("contract", {}))
             file_counts[current] = len(files)
-    for name, each in by_name.items():
-        if requirements := sentences.get(name):  # empty for a question that a person grades
-            written, rest = files[: file_counts[name]], files[file_counts[name] :]
+    for name, exercise in by_name.items():
+        if requirements := sentences.get(name):  # a question that a person grades has none
+            before, after = files[: file_counts[name]], files[file_counts[name] :]
             yield replace(
-                each, sentences=tuple(requirements), later=tuple(file for file in rest if file not in written)
+                exercise, sentences=tuple(requirements), later=tuple(file for file in after if file not in before)
             )
 
 

@@ -28,14 +28,15 @@ from sim.grading import grading
 
 SERVICE = "AUTOGRADER_SERVICE"  # the variable with the service's address, which the hub's configuration sets
 TOKEN = "JUPYTERHUB_API_TOKEN"  # the variable with the token of the user's server
-PAUSES = (1.0, 2.0, 4.0, 8.0)  # s between tries while the service starts again
-TIMEOUT = 60.0  # s
-DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date that a zip can hold; files' own dates would make equal answers differ
-MAX_REPLY = 100_000  # bytes
-MAX_ANSWER = 16 * 1024 * 1024  # bytes of an answer, packed
+PAUSES = (1.0, 2.0, 4.0, 8.0)  # s; how long to wait after each failed try, for example while the service restarts
+TIMEOUT = 60.0  # s; how long to wait for a reply
+# The date of each file in a zip: the earliest possible one. With the files' own dates, equal answers would differ.
+DATE = (1980, 1, 1, 0, 0, 0)
+MAX_REPLY = 100_000  # bytes; the rest of a longer reply is not read
+MAX_ANSWER = 16 * 1024 * 1024  # bytes; the largest zip that is sent
 UNSURE = "Your answer may or may not have arrived. Run the cell again: it is handed in only once."
 
-_unsure: dict[tuple[str, str], str] = {}  # keys of answers without a receipt, by assignment and digest
+_unconfirmed: dict[tuple[str, str], str] = {}  # the keys of answers without a receipt, by assignment and digest
 
 
 @dataclass(frozen=True)
@@ -84,34 +85,34 @@ def submit(assignment: str, folder: str | Path = ".") -> Receipt | Notice:
         files = intake.read_files(Path(folder), assignment)
     except StudentError as error:
         return Notice("Nothing was handed in.", str(error), TROUBLE)
-    answer = packed(files)
+    answer = make_zip(files)
     if len(answer) > MAX_ANSWER:
         size = (
             f"The folder is {len(answer) / 2**20:.0f} MiB as a zip, but at most {MAX_ANSWER // 2**20} MiB are accepted."
         )
         return Notice("Nothing was handed in.", f"{size} Move large files that are not part of it elsewhere.", TROUBLE)
     digest = hashlib.sha256(answer).hexdigest()
-    key = _unsure.setdefault((assignment, digest), secrets.token_hex(16))
+    key = _unconfirmed.setdefault((assignment, digest), secrets.token_hex(16))
     try:
         receipt = hand_in(service, token, assignment, key, answer)
     except HandInError as error:
         if error.is_sure:
-            del _unsure[assignment, digest]
+            del _unconfirmed[assignment, digest]
         return Notice("Nothing was handed in." if error.is_sure else UNSURE, str(error), TROUBLE)
-    del _unsure[assignment, digest]
+    del _unconfirmed[assignment, digest]
     return receipt
 
 
 class HandInError(Exception):
-    """The service did not accept the answer. Unless `is_sure`, it may have, but its reply was lost."""
+    """The service did not accept the answer. If `is_sure` is False, it may have done so, but its reply was lost."""
 
     def __init__(self, sentence: str, *, is_sure: bool = True) -> None:
         super().__init__(sentence)
         self.is_sure = is_sure
 
 
-def packed(files: Sequence[SubmittedFile]) -> bytes:
-    """Return files as a zip. Equal files make equal zips."""
+def make_zip(files: Sequence[SubmittedFile]) -> bytes:
+    """Return files as a zip. The zips of equal files are equal."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for file in sorted(files, key=lambda submitted: submitted.path):
@@ -125,8 +126,8 @@ def packed(files: Sequence[SubmittedFile]) -> bytes:
 def hand_in(service: str, token: str, assignment: str, key: str, answer: bytes) -> Receipt:
     """Send an answer to the service at this address, and return its receipt.
 
-    If the service does not reply, for example because it is starting, the answer is sent again with the same key, so
-    that it is one hand-in however often it arrives. Raises HandInError if the service does not accept it.
+    If the service does not reply, for example because it is starting, the answer is sent again with the same key. The
+    service stores an answer with a known key only once. Raises HandInError if the service does not accept the answer.
     """
     url = urljoin(f"{service.rstrip('/')}/", f"hand-ins/{quote(assignment, safe='')}/{key}")
     headers = {"Authorization": f"token {token}", "Content-Type": "application/zip"}
@@ -137,8 +138,8 @@ def hand_in(service: str, token: str, assignment: str, key: str, answer: bytes) 
             with opener.open(request, timeout=TIMEOUT) as reply:
                 return _receipt(assignment, reply.read(MAX_REPLY))
         except urllib.error.HTTPError as error:
-            if error.code not in (502, 503, 504) or pause is None:  # of the proxy, while the service starts
-                raise HandInError(_sentence(error), is_sure=error.code not in (502, 504)) from None
+            if error.code not in (502, 503, 504) or pause is None:  # from the proxy while the service starts
+                raise HandInError(_error_sentence(error), is_sure=error.code not in (502, 504)) from None
         except (OSError, http.client.HTTPException) as error:
             if pause is None:
                 raise HandInError(f"The service does not answer: {error}.", is_sure=False) from None
@@ -155,7 +156,7 @@ def _receipt(assignment: str, data: bytes) -> Receipt:
         raise HandInError("The reply is not from the grading service: tell your instructor.", is_sure=False) from None
 
 
-def _sentence(error: urllib.error.HTTPError) -> str:
+def _error_sentence(error: urllib.error.HTTPError) -> str:
     try:
         return str(json.loads(error.read(MAX_REPLY))["error"])
     except (ValueError, KeyError, TypeError, OSError):

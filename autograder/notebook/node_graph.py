@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from autograder.notebook.notices import Notice
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from sim.grading import grading
 
-HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")  # of nearly every node; they would clutter the drawing
-STABLE_SECONDS = 1.0  # real time without a change until discovery counts as finished
-ROW, NODE, TOPIC, GAP = 46, 190, 210, 110  # pixels: row height, box widths, space between columns
+HIDDEN_TOPICS = ("/rosout", "/parameter_events", "/clock")  # topics of nearly every node, which clutter the drawing
+STABLE_SECONDS = 1.0  # real time; if the graph has not changed for this long, discovery counts as finished
+# In pixels: the height of a row, the widths of a node's and a topic's box, and the space between columns.
+ROW, NODE, TOPIC, GAP = 46, 190, 210, 110
 
 STYLE = """
 .ros-graph { font: 13px system-ui, sans-serif; max-width: 100%; }
@@ -87,7 +88,7 @@ def graph(seconds: float = 10.0) -> Graph | Notice:
     from rclpy.node import Node
 
     context = Context()
-    with announcing_often():
+    with fast_discovery():
         rclpy.init(context=context)
     try:
         observer = Node("_graph", context=context, start_parameter_services=False, enable_rosout=False)
@@ -99,31 +100,31 @@ def graph(seconds: float = 10.0) -> Graph | Notice:
 def _wait_until_stable(observer: Any, seconds: float) -> Graph:
     """Read the graph until it has not changed for `STABLE_SECONDS`, or until `seconds` have passed."""
     deadline = time.monotonic() + seconds
-    latest, changed_at = _read_graph(observer), time.monotonic()
+    latest_graph, changed_at = _read_graph(observer), time.monotonic()
     while time.monotonic() < min(deadline, changed_at + STABLE_SECONDS):
         time.sleep(0.05)
-        current = _read_graph(observer)
-        if current != latest or not current.nodes:
-            latest, changed_at = current, time.monotonic()
-    return latest
+        current_graph = _read_graph(observer)
+        if current_graph != latest_graph or not current_graph.nodes:
+            latest_graph, changed_at = current_graph, time.monotonic()
+    return latest_graph
 
 
 def _read_graph(observer: Any) -> Graph:
     """Return the current graph without hidden nodes, whose names start with an underscore."""
     topics = {name: kinds[0] for name, kinds in observer.get_topic_names_and_types() if name not in HIDDEN_TOPICS}
-    published = {
+    publications = {
         (_name(endpoint), topic) for topic in topics for endpoint in observer.get_publishers_info_by_topic(topic)
     }
-    subscribed = {
+    subscriptions = {
         (topic, _name(endpoint)) for topic in topics for endpoint in observer.get_subscriptions_info_by_topic(topic)
     }
     nodes = {f"{space.rstrip('/')}/{name}" for name, space in observer.get_node_names_and_namespaces()}
-    visible = tuple(sorted(node for node in nodes if not node.rpartition("/")[2].startswith("_")))
+    visible_nodes = tuple(sorted(node for node in nodes if not node.rpartition("/")[2].startswith("_")))
     return Graph(
-        visible,
+        visible_nodes,
         topics,
-        frozenset(pair for pair in published if pair[0] in visible),
-        frozenset(pair for pair in subscribed if pair[1] in visible),
+        frozenset(pair for pair in publications if pair[0] in visible_nodes),
+        frozenset(pair for pair in subscriptions if pair[1] in visible_nodes),
     )
 
 

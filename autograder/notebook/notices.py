@@ -26,7 +26,7 @@ class Notice:
 
 
 class NotGraded(Notice):
-    """The output of a locked grade cell outside of grading.
+    """The output of a locked grade cell in a student's notebook.
 
     Its text form is 0.0. nbgrader reads a cell's text as its points and gives full points if the text is not a number.
     With 0.0, its "Validate" button and a plain `nbgrader autograde` give no points.

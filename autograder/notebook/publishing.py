@@ -16,7 +16,7 @@ from typing import Any
 
 from autograder.exceptions import UsageError
 
-STEP_SECONDS = 0.1  # of ROS time between two calls, at the instants of the simulator's scans
+STEP_SECONDS = 0.1  # the ROS time between two calls, which is also the time between two scans of the simulator
 RESERVED_TOPICS = ("/scan", "/odom", "/clock", "/cmd_vel")  # topics of the simulator and of the controlling program
 _TOPIC = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 
@@ -33,7 +33,7 @@ def plan_messages(each_step: EachStep, seconds: float, workspace: Path) -> dict[
         workspace: the colcon workspace of the program.
 
     Raises:
-        UsageError: the returned value cannot be published. The message says when it was returned and what to do.
+        UsageError: a returned value cannot be published. The message says when it was returned and what to do.
     """
     from rclpy.serialization import serialize_message
 
@@ -58,22 +58,22 @@ def plan_messages(each_step: EachStep, seconds: float, workspace: Path) -> dict[
 
 
 def types_of(plan: Mapping[str, Any]) -> dict[str, type]:
-    """Return the message classes of a plan by topic."""
+    """Return the class of the messages on each topic of a plan."""
     parts = {topic: kind.split("/") for topic, kind in plan["types"].items()}
     return {topic: getattr(importlib.import_module(f"{part[0]}.msg"), part[-1]) for topic, part in parts.items()}
 
 
 def messages_at(plan: Mapping[str, Any], types: Mapping[str, type], time_ns: int) -> dict[str, Any]:
-    """Return the messages of a plan for an instant, in ns since the start. There are none between two steps."""
+    """Return a plan's messages for a time in ns since the start. Between two steps, there are none."""
     from rclpy.serialization import deserialize_message
 
-    number, rest = divmod(time_ns, round(STEP_SECONDS * 1e9))
-    step = plan["steps"][number - 1] if rest == 0 and 0 < number <= len(plan["steps"]) else {}
+    number, remainder = divmod(time_ns, round(STEP_SECONDS * 1e9))
+    step = plan["steps"][number - 1] if remainder == 0 and 0 < number <= len(plan["steps"]) else {}
     return {topic: deserialize_message(base64.b64decode(text), types[topic]) for topic, text in step.items()}
 
 
 def _type_of(topic: str, message: Any, workspace: Path) -> str:
-    """Return the ROS name of a message's type. Raises UsageError if it cannot be published on this topic."""
+    """Return the ROS name of a message's type. Raises UsageError if the message cannot be published on this topic."""
     if not _TOPIC.fullmatch(topic):
         raise UsageError(f"each_step names the topic {topic!r}, which is not a valid topic name")
     if topic in RESERVED_TOPICS:

@@ -16,7 +16,7 @@ from autograder.notebook.simulator_session import SimulatorSession
 from autograder.result.model import write_json
 from sim import Recording
 
-FILE = Path("scores.json")  # used only by this module
+FILE = Path("scores.json")  # in the notebook's folder; only this module uses it
 COLUMNS = ("", "run", "goal", "driven", "nearest thing")
 
 
@@ -27,10 +27,10 @@ class Score:
     Attributes:
         world: the world's name.
         run: the student's name for the run.
-        arrived: time at which the robot's centre reached the goal, in seconds; None if it did not.
-        left: smallest distance to the goal, in metres; 0 if it arrived.
-        metres: distance driven until it arrived or the drive ended.
-        margin: smallest distance between the robot's edge and an obstacle until then, in metres.
+        arrived: the time in seconds at which the robot's centre reached the goal; None if it did not.
+        left: the smallest distance to the goal in metres; 0 if the robot arrived.
+        metres: the distance that the robot drove until it arrived or the drive ended.
+        margin: the smallest distance in metres between the robot's edge and an obstacle up to then.
     """
 
     world: str
@@ -55,7 +55,7 @@ class Score:
 
 @dataclass(frozen=True)
 class ScoreTable:
-    """The student's drives in a world, best first, and the newest of them."""
+    """The scores of the student's drives in a world, best first, and the newest score."""
 
     scores: tuple[Score, ...]
     newest: Score
@@ -95,45 +95,47 @@ def score(drive: DriveReport | SimulatorSession | Notice, run: str = "") -> Scor
         return drive
     if drive.recording is None:
         return Notice("Nothing was recorded, so the run has no score.")
-    scores = _read()
+    scores = _read_scores()
     newest = score_of(drive.recording, run or f"run {len(scores) + 1}")
     scores.append(newest)
-    write_json(FILE, [asdict(each) for each in scores])
+    write_json(FILE, [asdict(entry) for entry in scores])
     return ScoreTable(
-        tuple(sorted((each for each in scores if each.world == newest.world), key=lambda s: s.rank)), newest
+        tuple(sorted((entry for entry in scores if entry.world == newest.world), key=lambda s: s.rank)), newest
     )
 
 
 def score_of(recording: Recording, run: str) -> Score:
-    """Return the score of the best robot on the way to the first goal.
+    """Return the score of the robot with the best rank, for the world's first goal.
 
     Raises UsageError if the world has no goal.
     """
     world = recording.simulation.world
     if not world.goals:
         raise UsageError(f"the world {world.name!r} has no goal: use another one, such as 'maze'")
-    return min((_of_robot(recording, run, robot) for robot in range(recording.poses.shape[1])), key=lambda s: s.rank)
+    return min(
+        (_score_of_robot(recording, run, robot) for robot in range(recording.poses.shape[1])), key=lambda s: s.rank
+    )
 
 
-def _of_robot(recording: Recording, run: str, robot: int) -> Score:
+def _score_of_robot(recording: Recording, run: str, robot: int) -> Score:
     world = recording.simulation.world
     goal, track = world.goals[0], recording.poses[:, robot, :2]
     gaps = np.hypot(*(track - (goal.x, goal.y)).T) - goal.radius
     in_goal = gaps <= 0.0
-    end = int(np.argmax(in_goal)) if in_goal.any() else len(track) - 1
+    last_step = int(np.argmax(in_goal)) if in_goal.any() else len(track) - 1
     return Score(
         world=world.name,
         run=run,
-        arrived=round(float(recording.times[end]), 2) if in_goal.any() else None,
+        arrived=round(float(recording.times[last_step]), 2) if in_goal.any() else None,
         left=round(max(0.0, float(gaps.min())), 2),
-        metres=round(float(np.hypot(*np.diff(track[: end + 1], axis=0).T).sum()), 2),
+        metres=round(float(np.hypot(*np.diff(track[: last_step + 1], axis=0).T).sum()), 2),
         margin=0.0
-        if recording.collided[: end + 1, robot].any()
-        else round(float(recording.clearances[: end + 1, robot].min()), 3),
+        if recording.collided[: last_step + 1, robot].any()
+        else round(float(recording.clearances[: last_step + 1, robot].min()), 3),
     )
 
 
-def _read() -> list[Score]:
+def _read_scores() -> list[Score]:
     if not FILE.exists():
         return []
     try:

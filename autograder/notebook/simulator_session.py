@@ -20,11 +20,13 @@ from sim.recording import Recording, load_recording
 if TYPE_CHECKING:
     from sim.view import Player
 
-READY_SECONDS = 180.0  # real time: the first simulation compiles the engine, which takes a minute on a busy machine
+# How long to wait for the simulator, in real time. The first simulation compiles the engine, which takes a minute on a
+# busy machine.
+READY_SECONDS = 180.0
 
 
 class SimulatorSession:
-    """A recording of the simulated robots. The track is available after the block."""
+    """A simulation of robots, and its recording, which is available after the block."""
 
     def __init__(self) -> None:
         self.recording: Recording | None = None

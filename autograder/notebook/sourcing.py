@@ -1,7 +1,7 @@
 """`source` is the equivalent of `source install/setup.bash` for a notebook's running kernel.
 
-The dynamic loader of a running process only searches the folders that it knew at its start. The libraries of a sourced
-package are therefore loaded by their paths when Python first imports the package's compiled part.
+The dynamic loader of a process searches only the folders that it knew when the process started. The libraries of a
+sourced package are therefore loaded by their paths when Python first imports the package's compiled part.
 """
 
 from __future__ import annotations
@@ -51,15 +51,17 @@ def source(workspace: str | Path = "ws") -> Notice:
     _put_first("PYTHONPATH", modules)
     sys.path[:] = [*map(str, modules), *(path for path in sys.path if Path(path) not in modules)]
     importlib.invalidate_caches()
-    stale = [prefix.name for prefix in prefixes if _FINDER.is_stale(prefix)]
-    if stale:
-        sentence = f"This kernel still uses the old {', '.join(stale)}: choose Kernel, Restart, and run from the top."
+    stale_packages = [prefix.name for prefix in prefixes if _FINDER.is_stale(prefix)]
+    if stale_packages:
+        sentence = (
+            f"This kernel still uses the old {', '.join(stale_packages)}: choose Kernel, Restart, and run from the top."
+        )
         return Notice(sentence, colour=TROUBLE)
     return Notice(f"This kernel can use {', '.join(prefix.name for prefix in prefixes)}.")
 
 
 class _Libraries(MetaPathFinder):
-    """Loads the libraries of a sourced package before its compiled part is imported. It does not find modules itself.
+    """Loads the libraries of a sourced package before its compiled part is imported. It never finds a module itself.
 
     Attributes:
         prefixes: the install prefix of each sourced package.
@@ -67,26 +69,28 @@ class _Libraries(MetaPathFinder):
 
     def __init__(self) -> None:
         self.prefixes: dict[str, Path] = {}
-        self._loaded: dict[str, str] = {}  # a fingerprint of each package's interfaces when its libraries were loaded
+        # A fingerprint of each package's interfaces, as they were when its libraries were loaded.
+        self._loaded_fingerprints: dict[str, str] = {}
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         package, _, module = fullname.partition(".")
-        if package in self.prefixes and package not in self._loaded and module.startswith(f"{package}_s__"):
-            self._loaded[package] = _fingerprint(self.prefixes[package])
+        is_loaded = package in self._loaded_fingerprints
+        if package in self.prefixes and not is_loaded and module.startswith(f"{package}_s__"):
+            self._loaded_fingerprints[package] = _fingerprint(self.prefixes[package])
             for library in sorted((self.prefixes[package] / "lib").glob("lib*.so")):
                 self._load(library)
         return None
 
     def is_stale(self, prefix: Path) -> bool:
-        """Return whether this process has loaded a different version of a package's interfaces than is installed."""
-        return self._loaded.get(prefix.name, fingerprint := _fingerprint(prefix)) != fingerprint
+        """Return whether this process has loaded other interfaces of a package than those that are installed now."""
+        return self._loaded_fingerprints.get(prefix.name, fingerprint := _fingerprint(prefix)) != fingerprint
 
     def _load(self, library: Path, required_by: tuple[str, ...] = ()) -> None:
         """Load a library, after the libraries of sourced packages that it needs.
 
-        If it cannot be loaded, the subsequent import raises the error.
+        If the library cannot be loaded, the import that follows raises the error.
         """
         try:
             ctypes.CDLL(str(library))

@@ -1,4 +1,4 @@
-"""Stores the result of a check for as long as everything that it depends on is unchanged.
+"""Stores the result of a check, which can be reused while everything that it depends on is unchanged.
 
 A result depends on the student's files in `src`, on every file that the checks read (`autograder.suite.fingerprint`),
 and on the environment: Python, ROS 2 with all installed packages, a worker's environment variables, and the isolation
@@ -30,9 +30,9 @@ from autograder.run.sandbox import best_isolation
 from autograder.run.sandbox.worker_sandbox import passed_variables
 from autograder.suite import fingerprint
 
-CACHE = "checks"
-MAX_FILES = 100  # stored files, one for each chapter of a workspace
-# These differ between a kernel and a terminal, and a workspace's programs get their own values.
+CACHE = "checks"  # the name of the cache in which results are stored
+MAX_FILES = 100  # how many files are kept; there is one for each chapter of a workspace
+# Variables that differ between a kernel and a terminal. The programs of a workspace get their own values.
 _IGNORED = frozenset({"ROS_DOMAIN_ID", "ROS_LOG_DIR", "PYTHONDONTWRITEBYTECODE", *LOGS_TO_STDOUT})
 
 
@@ -42,7 +42,7 @@ class Inputs:
 
     Attributes:
         digest: a digest of all inputs.
-        stamp: a digest of each file's last modification. It differs even if a file was changed and changed back.
+        stamp: a digest of when each file was last modified. It differs even if a file was changed and changed back.
     """
 
     digest: str
@@ -67,13 +67,17 @@ class StoredResult:
 
     @property
     def since(self) -> str:
-        """The time of day at which it was created, with the date unless that is today."""
-        created = datetime.fromisoformat(self.created_at)
-        return f"{created:%H:%M}" if created.date() == datetime.now().date() else f"{created:%d %B, %H:%M}"
+        """The time of day at which the result was created, with the date unless that was today."""
+        creation_time = datetime.fromisoformat(self.created_at)
+        return (
+            f"{creation_time:%H:%M}"
+            if creation_time.date() == datetime.now().date()
+            else f"{creation_time:%d %B, %H:%M}"
+        )
 
 
 def current_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> Inputs | None:
-    """Return the inputs of a check of a folder of packages, or None if files are changing or one is a link.
+    """Return the current inputs of a check, or None if files are being changed or one is a link.
 
     Args:
         assignment: the chapter.
@@ -84,13 +88,13 @@ def current_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> 
     digest.update(json.dumps(_environment(), sort_keys=True, default=str).encode())
     try:
         notebook = course_paths.source_notebook(assignment)
-        digest.update(_cells(notebook))
+        digest.update(_notebook_content(notebook))
         read = (path for path in fingerprint.files(assignment, reads) if path != notebook)
-        for path in (*read, *sorted(Path(__file__).parent.glob("*.py")), *_files(source)):
+        for path in (*read, *sorted(Path(__file__).parent.glob("*.py")), *_source_files(source)):
             data = b"" if path.is_dir() else path.read_bytes()
             name = f"{path}\0{bool(path.stat().st_mode & 0o100)}\0{len(data)}\0".encode("utf-8", "surrogateescape")
             digest.update(name + data)
-            stamp.update(name + _stamp(path))
+            stamp.update(name + _file_stamp(path))
     except OSError:
         return None
     return Inputs(digest.hexdigest(), stamp.hexdigest())
@@ -99,14 +103,16 @@ def current_inputs(assignment: str, source: Path, reads: Iterable[str] = ()) -> 
 def load(workspace: Path, assignment: str, part: str) -> StoredResult | None:
     """Return the stored result of a chapter or a part of it, or None if it is missing or unreadable."""
     with suppress(OSError, ValueError, TypeError, LookupError, AttributeError):
-        stored: StoredResult = structure(StoredResult, json.loads(_file(workspace, assignment).read_bytes())[part])
-        return stored
+        stored_result: StoredResult = structure(
+            StoredResult, json.loads(_result_file(workspace, assignment).read_bytes())[part]
+        )
+        return stored_result
     return None
 
 
 def store(workspace: Path, assignment: str, part: str, result: StoredResult) -> None:
     """Store a result in place of the previous one. If the disk is full, store nothing."""
-    file, other_parts = _file(workspace, assignment), {}
+    file, other_parts = _result_file(workspace, assignment), {}
     with suppress(OSError, ValueError):
         other_parts = json.loads(file.read_bytes())
     with suppress(OSError):
@@ -117,37 +123,37 @@ def store(workspace: Path, assignment: str, part: str, result: StoredResult) -> 
 
 
 def stamp_of(paths: Iterable[Path]) -> str:
-    """Return a digest of the modification times of files, including those in folders. Skip unreadable ones."""
+    """Return a digest of when files, and the files in folders, were last modified. Unreadable ones are skipped."""
     digest = hashlib.sha256()
     for top in paths:
         for path in (top,) if top.is_file() else sorted(top.rglob("*")):
             with suppress(OSError):
-                digest.update(str(path).encode("utf-8", "surrogateescape") + _stamp(path))
+                digest.update(str(path).encode("utf-8", "surrogateescape") + _file_stamp(path))
     return digest.hexdigest()
 
 
-def _file(workspace: Path, assignment: str) -> Path:
+def _result_file(workspace: Path, assignment: str) -> Path:
     name = hashlib.sha256(f"{workspace.resolve()}\0{assignment}".encode("utf-8", "surrogateescape")).hexdigest()[:32]
     return Cache.default(CACHE).root / f"{name}.json"
 
 
-def _files(source: Path) -> Iterator[Path]:
+def _source_files(source: Path) -> Iterator[Path]:
     """Yield the folders and files that a check copies, sorted.
 
     Raises OSError if there are none, or if there is a link, whose target may change.
     """
     os.scandir(source).close()
     for folder, folders, names in os.walk(source):
-        ignored = course_paths.NOT_COPIED(folder, [*folders, *names])
-        folders[:] = sorted(set(folders) - ignored)
-        for path in (Path(folder, name) for name in (*folders, *sorted(set(names) - ignored))):
+        ignored_names = course_paths.NOT_COPIED(folder, [*folders, *names])
+        folders[:] = sorted(set(folders) - ignored_names)
+        for path in (Path(folder, name) for name in (*folders, *sorted(set(names) - ignored_names))):
             if path.is_symlink():
                 raise OSError(f"{path} is a link")
             yield path
 
 
-def _cells(notebook: Path) -> bytes:
-    """Return the relevant content of a notebook, or all bytes of one that is only partly written."""
+def _notebook_content(notebook: Path) -> bytes:
+    """Return the relevant content of a notebook, or all its bytes if the notebook is only partly written."""
     data = notebook.read_bytes()
     try:
         content = json.loads(data)
@@ -159,20 +165,20 @@ def _cells(notebook: Path) -> bytes:
         return data
 
 
-def _stamp(path: Path) -> bytes:
+def _file_stamp(path: Path) -> bytes:
     status = path.stat()
     return f"{status.st_ino} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}\n".encode()
 
 
 def _environment() -> Mapping[str, Any]:
     ros = find()
-    installed = {name for folder in _site_packages() for name in _versions(folder)}
+    installed_packages = {name for folder in _site_packages() for name in _installation_stamps(folder)}
     own_variables = without_wheel_bootstrap(os.environ)
     variables = {**ros.variables(log_dir=Path("/")), **own_variables, "PATH": path_with_scripts()}
     relevant_variables = {name: value for name, value in passed_variables(variables).items() if name not in _IGNORED}
     return {
         **identity(ros),
-        "installed": sorted(installed),
+        "installed": sorted(installed_packages),
         "launch": describe_launch(),
         "system": os.uname()[::2],
         "isolation": best_isolation().value,
@@ -185,8 +191,8 @@ def _site_packages() -> list[Path]:
     return [Path(path) for path in {*on_path, *site.getsitepackages()} if Path(path).is_dir()]
 
 
-def _versions(folder: Path) -> Iterator[str]:
-    """Yield each installed package with its installation time, because reading its metadata takes too long."""
+def _installation_stamps(folder: Path) -> Iterator[str]:
+    """Yield each installed package with the time of its installation, because reading versions takes too long."""
     with os.scandir(folder) as entries:
         for entry in entries:
             if entry.name.endswith((".dist-info", ".egg-info", ".pth")):

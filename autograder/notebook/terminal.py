@@ -18,13 +18,13 @@ from pathlib import Path
 
 from autograder.diagnosis import OK
 from autograder.exceptions import UsageError
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from autograder.submission.exercise_stubs import explain
 from sim.grading import grading
 
 NOT_WHILE_GRADING = "Commands are not run while the notebook is graded."
-STOP_SECONDS = 30.0  # real time for a command to end after Ctrl-C; `ros2 launch` itself gives its nodes 10
-_STEP = 0.05
+STOP_SECONDS = 30.0  # real time in which a command must end after Ctrl-C; `ros2 launch` waits 10 s for its nodes
+_STEP = 0.05  # s; how often a condition is tested
 _BUILD = re.compile(r"\bcolcon\b[^|;&]*\bbuild\b(?:[^|;&]*--packages-select(?P<packages>(?: +[\w.]+)+))?")
 _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
 
@@ -32,7 +32,7 @@ _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
 def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws") -> None:
     """Run a command to its end and print its output.
 
-    A build is not run if its packages contain unsolved exercises. Their names are printed instead.
+    If the packages of a build contain unsolved exercises, the build is not run, and a message names the exercises.
 
     Args:
         command: as typed in a terminal, in the assignment's folder.
@@ -77,12 +77,12 @@ def running(
         return
     texts = [until] if isinstance(until, str) else until
     # All programs in the block announce themselves often, so that `ros2 node list` finds them within a second.
-    with announcing_often(), _Terminal(command, Path(workspace)) as terminal:
+    with fast_discovery(), _Terminal(command, Path(workspace)) as terminal:
         terminal.wait(lambda: all(text in terminal.output() for text in texts), seconds)
         terminal.show()
-        missing = [text for text in texts if text not in terminal.output()]
-        if missing and terminal.is_running:
-            print(f"[not printed within {seconds:g} s: {', '.join(map(repr, missing))}]")
+        missing_texts = [text for text in texts if text not in terminal.output()]
+        if missing_texts and terminal.is_running:
+            print(f"[not printed within {seconds:g} s: {', '.join(map(repr, missing_texts))}]")
         try:
             yield
         finally:
@@ -90,7 +90,7 @@ def running(
 
 
 def _unsolved_message(command: str, workspace: Path) -> str:
-    """Return a message instead of a colcon build that must fail because a file still contains an exercise's stub."""
+    """Return a message if the command is a colcon build that must fail, because a file still contains a stub."""
     if not (build := _BUILD.search(command)):
         return ""
     source = workspace / "src"
@@ -100,7 +100,7 @@ def _unsolved_message(command: str, workspace: Path) -> str:
 
 
 class _Terminal:
-    """A command in a separate session. It writes to a file, because a full pipe could block it."""
+    """A command that runs in its own session. It writes to a file, because a full pipe could block it."""
 
     def __init__(self, command: str, workspace: Path) -> None:
         if not workspace.is_dir():
@@ -108,14 +108,14 @@ class _Terminal:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115  # closed by __exit__
         self._printed_length = 0
         # With this variable, a build prints byte-code warnings that look like errors in the package.
-        inherited = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+        inherited_variables = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
         self._process = subprocess.Popen(
             ["bash", "-c", _SOURCED, str(workspace.resolve() / "install" / "local_setup.bash"), command],
             stdin=subprocess.DEVNULL,
             stdout=self._file,
             stderr=subprocess.STDOUT,
-            env={**inherited, "PATH": path, "PYTHONUNBUFFERED": "1"},
+            env={**inherited_variables, "PATH": path, "PYTHONUNBUFFERED": "1"},
             start_new_session=True,
         )
 
@@ -164,7 +164,7 @@ class _Terminal:
             print(f"[exit status {status}]")
 
     def _signal(self, number: signal.Signals) -> None:
-        """Send a signal to the whole session, as a terminal does, unless it has ended."""
+        """Send a signal to the whole session, as a terminal does. If the session has ended, do nothing."""
         try:
             os.killpg(self._process.pid, number)
         except ProcessLookupError:

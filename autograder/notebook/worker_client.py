@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from autograder import course_paths
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.exceptions import GraderError, UsageError
 from autograder.run.sandbox import Isolation, best_isolation
 from autograder.run.sandbox.limits import NOTEBOOK_WORKER
 from autograder.run.sandbox.spec import View
-from autograder.run.sandbox.worker_sandbox import ended, in_worker_sandbox, place_of
-from autograder.suite.fingerprint import places
+from autograder.run.sandbox.worker_sandbox import in_worker_sandbox, path_in_sandbox, wait_and_report
+from autograder.suite.fingerprint import suite_paths
 
 REQUEST = "request.json"
 REPLY_FILE = "answer.json"
@@ -35,7 +35,7 @@ def run_in_worker(
     Args:
         verb: `drive` or `check`.
         workspace: the student's workspace.
-        early: called once with the first part of the reply, while the worker continues.
+        early: a function that is called once with the first part of the reply, while the worker continues.
         arguments: the verb's arguments.
 
     Raises:
@@ -60,18 +60,25 @@ def run_on(
     early: Callable[[dict[str, Any]], None] | None = None,
     **arguments: Any,
 ) -> Iterator[tuple[dict[str, Any], Path]]:
-    """Do the same as `run_in_worker`, at an isolation level. For a check, `source` may be a whole submission."""
+    """Do the same as `run_in_worker` at a given isolation level. For a check, `source` may be a submission."""
     own_end, worker_end = Pipe()
     with tempfile.TemporaryDirectory(prefix="request-") as folder, own_end:
 
         def command(scratch: Path) -> list[str]:
-            request = {"verb": verb, "source": place_of(source, isolation, scratch), "out": folder, "scratch": scratch}
+            request = {
+                "verb": verb,
+                "source": path_in_sandbox(source, isolation, scratch),
+                "out": folder,
+                "scratch": scratch,
+            }
             request["arguments"] = arguments
             file = Path(folder) / REQUEST  # a large map does not fit on a command line
             file.write_text(json.dumps(request, default=str))
             return [sys.executable, "-m", "autograder.notebook.check_worker", str(file), str(worker_end.fileno())]
 
-        visible_paths = places(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
+        visible_paths = (
+            suite_paths(assignment, parts=("visible",)) if (assignment := arguments.get("assignment")) else []
+        )
         if source.is_file():
             # The reader of a submission compares it with the released chapter.
             visible_paths.append(course_paths.chapter(arguments["assignment"]))
@@ -83,7 +90,7 @@ def run_on(
                 _,
             ),
         ):
-            worker_end.close()  # the worker has the only other copy, so the connection ends with it
+            worker_end.close()  # now the worker has the only copy, so the connection ends when the worker does
             first_part, listeners = Path(folder) / EARLY_FILE, [early] if early else []
 
             def has_ended() -> bool:
@@ -92,9 +99,10 @@ def run_on(
                     listeners.pop()(json.loads(first_part.read_text(encoding="utf-8")))
                 return process.exit_reason is not None
 
-            keeper.attend(own_end, isolation, has_ended)  # answers the worker's requests for interface packages
+            # Answer the worker's requests for interface packages until it ends.
+            bundle_server.serve_worker(own_end, isolation, has_ended)
             has_ended()  # the worker may have written the first part just before it ended
-            report = ended(process)
+            report = wait_and_report(process)
         reply = Path(folder) / REPLY_FILE
         if report.returncode != 0 or not reply.is_file():
             raise GraderError(f"the check itself failed, not your code:\n{report.output[-3000:]}")

@@ -25,11 +25,11 @@ REPLACED = "replaced"
 
 
 def register(shell: InteractiveShell | None) -> None:
-    """Replace `%%writefile` of this shell by the course's. Without a shell, do nothing. Safe to call twice."""
+    """Replace the shell's `%%writefile` with the course's. Without a shell, do nothing. Safe to call twice."""
     if shell is None:
         return
-    in_shell: Any = shell  # IPython has no types
-    original = in_shell.find_cell_magic("writefile")
+    untyped_shell: Any = shell  # IPython has no type annotations
+    original = untyped_shell.find_cell_magic("writefile")
     if original is None or getattr(original, "is_course_magic", False):
         return
 
@@ -37,24 +37,24 @@ def register(shell: InteractiveShell | None) -> None:
         write(line, cell, original)
 
     writefile.is_course_magic = True  # type: ignore[attr-defined]
-    in_shell.register_magic_function(writefile, "cell")
+    untyped_shell.register_magic_function(writefile, "cell")
 
 
 def write(line: str, cell: str, original: Any) -> None:
     """Write a cell's text to the file named by `line`, unless that would destroy a student's work.
 
-    The whole old text is compared. If the record is lost, the result is an extra copy, never lost work. `line` is the
-    text after `%%writefile`, and `original` is IPython's own magic, which writes the file and prints a message.
+    If the record of the last written texts is lost, a needless copy is made, but no work is lost. `line` is the text
+    after `%%writefile`, and `original` is IPython's own magic, which writes the file and prints a message.
     """
     parse: Any = magic_arguments.parse_argstring
     arguments = parse(original, line)
     path = Path(arguments.filename.strip("'\"")).expanduser()
-    workspace = _workspace(path)
-    record, name, on_disk = read_record(workspace), os.path.relpath(path, workspace), _text(path)
+    workspace = _find_workspace(path)
+    record, name, on_disk = read_record(workspace), os.path.relpath(path, workspace), _read_text(path)
     _make_folder(path.parent)
     if arguments.append:
         original(line, cell)
-        if on_disk is None or record.get(name) == digest(on_disk):  # only cells have written it
+        if on_disk is None or record.get(name) == digest(on_disk):  # only cells have written the file
             write_json(workspace / RECORD, {**record, name: digest((on_disk or "") + cell)})
         return
     if on_disk is not None and on_disk != cell:
@@ -88,12 +88,12 @@ def _show(sentence: str) -> None:
     show(Notice(sentence))
 
 
-def _workspace(path: Path) -> Path:
+def _find_workspace(path: Path) -> Path:
     """Return the workspace `ws` that contains a file, or the file's folder."""
     return next((folder for folder in path.parents if folder.name == "ws"), path.parent)
 
 
-def _text(path: Path) -> str | None:
+def _read_text(path: Path) -> str | None:
     if not path.is_file():
         return None
     return path.read_bytes().decode("utf-8", "surrogateescape")

@@ -1,4 +1,4 @@
-"""The record of the texts that cells last wrote with `%%writefile`, one in each workspace."""
+"""A record in each workspace of the texts that cells last wrote with `%%writefile`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import hashlib
 import json
 from pathlib import Path
 
-RECORD = ".writefile.json"  # in a workspace: by path, a digest of the text that a cell last wrote
+RECORD = ".writefile.json"  # in a workspace; maps each path to a digest of the text that a cell last wrote there
 
 
 def digest(text: str) -> str:

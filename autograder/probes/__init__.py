@@ -1,1 +1,1 @@
-"""Probes inspect a student's package or running program; checks call them. None imports the student's code here."""
+"""Probes inspect a student's package or running program for checks, and never import the student's code here."""

@@ -1,4 +1,4 @@
-"""Installs a package with added files: a handwritten list of names in setup.py would miss them."""
+"""Installs a package with added files, which a handwritten list of names in setup.py would miss."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from autograder.building.build import build
-from autograder.probes.installed import Installed, look
+from autograder.probes.installed import Installed, inspect_package
 from autograder.run.workspace import Workspace
 from autograder.submission.packages import find_packages
 from autograder.submission.reading import reading
 
 
 def install_with(workspace: Workspace, package: str, files: Iterable[str]) -> Installed:
-    """Copy a package, add empty files to the copy, build it, and return its installation.
+    """Copy a package, add empty files to the copy, build it, and return what was installed.
 
     Args:
-        workspace: the built workspace; it is left as it is.
+        workspace: the built workspace, which is not changed.
         package: the package's name.
         files: paths below the package's folder.
 
@@ -33,4 +33,4 @@ def install_with(workspace: Workspace, package: str, files: Iterable[str]) -> In
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
             (folder / file).write_text("")
     build(copy, (package,))
-    return look(copy.install, package)
+    return inspect_package(copy.install, package)

@@ -27,7 +27,7 @@ from autograder.submission.packages import find_packages
 from autograder.submission.reading import reading
 from autograder.suite import expect
 
-TEST_EXTRAS = ("test", "tests", "testing")  # in which colcon looks for pytest
+TEST_EXTRAS = ("test", "tests", "testing")  # the extras in which colcon looks for pytest
 
 
 def colcon_test(workspace: Workspace, package: str) -> Report:
@@ -36,8 +36,8 @@ def colcon_test(workspace: Workspace, package: str) -> Report:
     It writes to a copy of the workspace, or to the workspace itself with `Isolation.PROCESS`, which mounts nothing.
 
     Returns:
-        colcon's exit status, and the tests in the file that `colcon test-result` would count. If it had to be stopped,
-        those of a second run, as in `student_test_runs.run`.
+        colcon's exit status, and the tests in the file that `colcon test-result` would count. If the first run had to
+        be stopped, both are from a second run, as in `student_test_runs.run`.
     """
     first, _ = _colcon_test(workspace, package)
     return first if first.exit_reason is not ExitReason.WALL_TIME else _colcon_test(workspace, package)[0]
@@ -55,40 +55,40 @@ def expect_ended(report: Report) -> None:
 def runs_pytest(workspace: Workspace, installed: Installed) -> bool:
     """Return whether `colcon test` runs pytest on a built package, as it does if setup.py names pytest.
 
-    It does where `extras_require` names it, with every setuptools. Otherwise colcon itself answers, because the answer
-    depends on the platform: a setuptools before 72.0, such as the 68.1.2 of Ubuntu 24.04, reads `tests_require`, too.
-    The tests are collected and not run.
+    With any version of setuptools, it does if `extras_require` names pytest. Otherwise it depends on the platform:
+    setuptools before 72.0, such as 68.1.2 in Ubuntu 24.04, also reads `tests_require`. In this case, colcon itself is
+    run, but only collects the tests.
     """
-    named = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
-    return "pytest" in named or _colcon_test(workspace, installed.package, "--collect-only")[1]
+    projects = {re.split(r"[ <=>!~\[;]", line)[0] for extra in TEST_EXTRAS for line in installed.extras.get(extra, ())}
+    return "pytest" in projects or _colcon_test(workspace, installed.package, "--collect-only")[1]
 
 
 def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> tuple[Report, bool]:
     """Return the report, and whether pytest has written one."""
-    run = secrets.token_hex(8)
-    choice = ["--packages-select", package, "--return-code-on-test-failure"]
-    choice += ["--pytest-args", "-o", f"junit_suite_name={run}", *pytest_arguments]
+    run_name = secrets.token_hex(8)
+    options = ["--packages-select", package, "--return-code-on-test-failure"]
+    options += ["--pytest-args", "-o", f"junit_suite_name={run_name}", *pytest_arguments]
     packages, _ = find_packages(workspace.root / "src")
-    plain = sandboxed(workspace, RUNNER, limits=COLCON_TEST)
-    environment = {**plain.environment, "COLCON_HOME": str(workspace.scratch)}
-    del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # colcon is the student's own way to run them, plug-ins and all
-    mounts = tuple(mount for mount in plain.mounts if mount.path != workspace.install)
-    with _copied(workspace.root) as copy:
+    spec = sandboxed(workspace, RUNNER, limits=COLCON_TEST)
+    environment = {**spec.environment, "COLCON_HOME": str(workspace.scratch)}
+    del environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"]  # students also run colcon with all plug-ins
+    mounts = tuple(mount for mount in spec.mounts if mount.path != workspace.install)
+    with _copy_of(workspace.root) as copy:
         mounts += (Mount(workspace.root, writable=True, source=copy),)
-        spec = replace(plain, workdir=workspace.root, environment=environment, mounts=mounts)
-        with launch(colcon_command(workspace, packages.values(), "test", *choice), spec, profile="colcon") as process:
+        spec = replace(spec, workdir=workspace.root, environment=environment, mounts=mounts)
+        with launch(colcon_command(workspace, packages.values(), "test", *options), spec, profile="colcon") as process:
             process.wait(COLCON_TEST.wall_seconds + 10)
             exit_reason, status, output = process.exit_reason, process.returncode, process.output
-        # In the workspace itself with `Isolation.PROCESS`.
+        # With `Isolation.PROCESS`, the report is in the workspace itself.
         reports = [read_below(root, Path("build", package, "pytest.xml"), MAX_BYTES) for root in (copy, workspace.root)]
-    written = next((report for report in reports if report and run.encode() in report), None)
-    claims = parse_claims(written) if written else None
+    own_report = next((report for report in reports if report and run_name.encode() in report), None)
+    claims = parse_claims(own_report) if own_report else None
     return Report(exit_reason, status, claims or Claims(), 0, output), claims is not None
 
 
 @contextmanager
-def _copied(root: Path) -> Iterator[Path]:
-    """Copy a workspace for the code of one run, which may write to it. Later checks read the workspace itself."""
+def _copy_of(root: Path) -> Iterator[Path]:
+    """Copy a workspace for one run, whose code may write to the copy. Later checks read the workspace itself."""
     copy = root.with_name(f"{root.name}-tested")  # not in scratch, where students' code may write
     with reading("What colcon built"):
         shutil.copytree(root, copy, symlinks=True)

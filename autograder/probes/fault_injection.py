@@ -1,4 +1,4 @@
-"""Whether tests fail when a fault is laid into a copy of their package. One that calls or asserts nothing passes."""
+"""Tests whether tests fail on a faulty copy of their package, where a test that asserts nothing still passes."""
 
 from __future__ import annotations
 
@@ -26,13 +26,15 @@ def expect_failures(workspace: Workspace, source: Source, tests: Collection[str]
     """
     modules = {test.partition("::")[0] for test in tests}
     files = sorted(name for name in source.tests if Path(name).suffix == ".py" and Path(name).stem in modules)
-    own = {name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")}
-    # Nothing that the run says is quoted: it is only compared with the names in `tests`.
-    test_run = TestRun(tuple(files), Version({**own, **faults}, {}), shown=True)
+    sources = {
+        name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")
+    }
+    # The report is not secret, because no part of it is quoted: its names are only compared with those in `tests`.
+    test_run = TestRun(tuple(files), Version({**sources, **faults}, {}), is_public=True)
     (report,) = student_test_runs.run(workspace, source, [test_run])
     pairs = [(name.partition("[")[0], verdict) for name, verdict in report.claims.verdicts.items()]
     for test in tests:
         verdicts = {verdict for name, verdict in pairs if name == test}
-        how = "was skipped" if ClaimedOutcome.SKIPPED in verdicts else "passed" if verdicts else "did not run"
-        saw = f"The checks put a fault into {' and '.join(faults)} of a copy of your package"
-        expect(verdicts == {ClaimedOutcome.FAILED}, f"{saw}, and {test.partition('::')[2]} {how}.")
+        outcome = "was skipped" if ClaimedOutcome.SKIPPED in verdicts else "passed" if verdicts else "did not run"
+        clause = f"The checks put a fault into {' and '.join(faults)} of a copy of your package"
+        expect(verdicts == {ClaimedOutcome.FAILED}, f"{clause}, and {test.partition('::')[2]} {outcome}.")

@@ -1,4 +1,4 @@
-"""Reading files that untrusted code may have written: plain files of a bounded size, and no links."""
+"""Reads files that untrusted code may have written: plain files of a bounded size, and no links."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def read_plain(path: Path, limit: int) -> bytes | None:
-    """Return a plain file's bytes; None for a link, a pipe, a folder or a file of more than `limit` bytes."""
+    """Return a plain file's bytes, or None for a link, a pipe, a folder or a file of more than `limit` bytes."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
@@ -25,39 +25,39 @@ def read_plain(path: Path, limit: int) -> bytes | None:
 
 
 def read_below(folder: Path, name: Path, limit: int) -> bytes | None:
-    """Return a file's bytes as `read_plain` does; None also if a link on the way to it leads out of the folder."""
+    """Return a file's bytes as `read_plain` does, or None if a link in its path leads out of the folder."""
     path = folder / name
     try:
-        inside = path.parent.resolve().is_relative_to(folder.resolve())
-    except (OSError, RuntimeError):  # links in a circle
+        is_inside = path.parent.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):  # links form a cycle
         return None
-    return read_plain(path, limit) if inside else None
+    return read_plain(path, limit) if is_inside else None
 
 
-def plain_files(folder: Path, most: int, *, left_out: Collection[str] = (), suffix: str = "") -> list[Path]:
-    """Return the plain files below a folder, relative to it, in order; no link is followed, the folder itself neither.
+def plain_files(folder: Path, limit: int, *, skip: Collection[str] = (), suffix: str = "") -> list[Path]:
+    """Return the plain files below a folder, relative to it, in order. No link is followed, not even `folder` itself.
 
     Args:
-        folder: where to look.
-        most: how many are returned.
-        left_out: names of folders that are passed over.
-        suffix: the end of their names.
+        folder: the folder to search.
+        limit: the maximum number of files.
+        skip: names of folders that are not searched.
+        suffix: the suffix of the files' names.
     """
     files: list[Path] = []
-    for where, folders, names in os.walk(folder) if not folder.is_symlink() else ():
-        folders[:] = sorted(name for name in folders if name not in left_out)
-        paths = [Path(where, name) for name in sorted(names) if name.endswith(suffix)]
+    for parent, folders, names in os.walk(folder) if not folder.is_symlink() else ():
+        folders[:] = sorted(name for name in folders if name not in skip)
+        paths = [Path(parent, name) for name in sorted(names) if name.endswith(suffix)]
         files += [path.relative_to(folder) for path in paths if stat.S_ISREG(path.lstat().st_mode)]
-        if len(files) >= most:
+        if len(files) >= limit:
             break
-    return files[:most]
+    return files[:limit]
 
 
 def parse_python(source: str | bytes) -> ast.Module | None:
     """Parse Python source without running it; return None if it is not Python."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # a student's "\d" is not our warning
+            warnings.simplefilter("ignore")  # a student's "\d" must not cause a warning here
             return ast.parse(source)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None

@@ -1,22 +1,23 @@
-"""Whether the files that came with a package are as they were given."""
+"""Finds files that came with a package and that the student has changed or deleted."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
 
-def changed_files(kept: Mapping[str, bytes], given: Mapping[str, bytes], folders: Collection[str]) -> list[str]:
-    """Return the given files, below these folders of a package, that are missing or changed; white space is free.
+def changed_files(actual: Mapping[str, bytes], given: Mapping[str, bytes], folders: Collection[str]) -> list[str]:
+    """Return the given files in some of a package's folders that the student has changed or deleted.
 
-    The copyright comment at the start is free, too: a cell of a notebook gives a file without it.
+    Changes in whitespace do not count, nor does the removal of the copyright comment at the start, because the cells of
+    a notebook write files without it.
 
     Args:
-        kept: the student's files, by their paths below the package's folder.
-        given: the files as they were given, by the same paths.
-        folders: names of folders of the package.
+        actual: the student's files, by their paths below the package's folder.
+        given: the original files, by the same paths.
+        folders: the names of the folders, directly below the package's folder.
     """
-    mine = [name for name in given if name.partition("/")[0] in folders]
-    return [name for name in mine if not _is_as_given(kept.get(name, b""), given[name])]
+    names = [name for name in given if name.partition("/")[0] in folders]
+    return [name for name in names if not _is_unchanged(actual.get(name, b""), given[name])]
 
 
 def strip_licence(text: str) -> str:
@@ -28,6 +29,6 @@ def strip_licence(text: str) -> str:
     return "".join(lines[body:]).lstrip("\n")
 
 
-def _is_as_given(kept: bytes, given: bytes) -> bool:
-    unlicensed = strip_licence(given.decode(errors="surrogateescape")).encode(errors="surrogateescape")
-    return kept.split() in (given.split(), unlicensed.split())
+def _is_unchanged(actual: bytes, given: bytes) -> bool:
+    without_licence = strip_licence(given.decode(errors="surrogateescape")).encode(errors="surrogateescape")
+    return actual.split() in (given.split(), without_licence.split())

@@ -1,7 +1,7 @@
-"""The imports of a package's sources, and whether package.xml declares them. Sources are parsed and never run.
+"""Compares the imports of a package's sources with the dependencies in package.xml. Sources are parsed and never run.
 
 rosdep installs the packages in package.xml before a build, so an undeclared import works only on its author's machine.
-Files that are too large or not Python, or exceed the maximum number, are left out.
+Files that are too large or not Python are left out, and so are files beyond `MAX_FILES`.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from autograder.suite import CheckFailed
 
 MAX_FILES = 300
 MAX_BYTES = 256 * 1024
-MAX_ALL_BYTES = 4 * 1024 * 1024  # of all files of a package that are parsed
-LEFT_OUT = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
+MAX_ALL_BYTES = 4 * 1024 * 1024  # bytes of all parsed files of a package
+SKIPPED_FOLDERS = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
 
 # The rosdep keys of common modules that are not ROS packages. A ROS package's key is its own name.
 KEYS = {
@@ -40,12 +40,12 @@ KEYS = {
     "sympy": "python3-sympy",
     "yaml": "python3-yaml",
 }
-SET_UP = "setup.py"  # colcon's own set-up provides its imports
+SETUP_FILE = "setup.py"  # not searched, because colcon provides its imports
 
 
 @dataclass(frozen=True)
 class Import:
-    """A top-level module, such as `numpy`, that files of a package import from outside."""
+    """An external top-level module, such as `numpy`, and the files of a package that import it."""
 
     module: str
     files: tuple[str, ...]
@@ -63,37 +63,37 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
 
     Args:
         package: the package's folder.
-        within: only files below these folders of it; all if none is named.
-        without: no files below these.
+        within: the folders of the package whose files are read; all if empty.
+        without: the folders whose files are not read.
 
     Raises:
-        CheckFailed: these files hold more than `MAX_ALL_BYTES`.
+        CheckFailed: together, these files are larger than `MAX_ALL_BYTES`.
     """
-    own = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
+    first_party = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
     by_module: dict[str, list[str]] = {}
-    left = MAX_ALL_BYTES
-    for where in plain_files(package, MAX_FILES, left_out=LEFT_OUT, suffix=".py"):
-        path = package / where
-        top = where.parts[0]
-        if str(where) == SET_UP or (within and top not in within) or top in without:
+    remaining = MAX_ALL_BYTES
+    for file in plain_files(package, MAX_FILES, skip=SKIPPED_FOLDERS, suffix=".py"):
+        path = package / file
+        top = file.parts[0]
+        if str(file) == SETUP_FILE or (within and top not in within) or top in without:
             continue
-        # A test imports its neighbours, which pytest puts on the path.
-        beside = {sibling.stem for sibling in path.parent.glob("*.py")} if top == "test" else set()
+        # A test can import the modules beside it, because pytest puts their folder on the path.
+        siblings = {sibling.stem for sibling in path.parent.glob("*.py")} if top == "test" else set()
         text = _text(path)
-        left -= len(text)
-        if left < 0:
+        remaining -= len(text)
+        if remaining < 0:
             raise CheckFailed(
                 f"{package.name} holds more than {MAX_ALL_BYTES // 2**20} MiB of Python, too much to look for its "
                 "imports: keep generated files out of the package."
             )
-        for module in modules(text) - own - beside - sys.stdlib_module_names:
-            by_module.setdefault(module, []).append(str(where))
+        for module in modules(text) - first_party - siblings - sys.stdlib_module_names:
+            by_module.setdefault(module, []).append(str(file))
     return tuple(Import(module, tuple(files)) for module, files in sorted(by_module.items()))
 
 
-@lru_cache(MAX_FILES)  # several checks look at the same files
+@lru_cache(MAX_FILES)  # several checks read the same files
 def modules(text: str) -> frozenset[str]:
-    """Return the top-level names that a module's text imports, or none if it is not Python."""
+    """Return the names of the top-level modules that a source text imports; none if it is not Python."""
     names: set[str] = set()
     for node in ast.walk(parse_python(text) or ast.Module([], [])):
         if isinstance(node, ast.Import):
@@ -105,27 +105,28 @@ def modules(text: str) -> frozenset[str]:
 
 def undeclared(imports: Collection[Import], declared: Collection[str]) -> tuple[Import, ...]:
     """Return the imports that no declared name covers."""
-    return tuple(each for each in imports if not set(each.keys) & set(declared))
+    return tuple(item for item in imports if not set(item.keys) & set(declared))
 
 
 def missing(package: Path, manifest: Manifest) -> Mapping[str, tuple[Import, ...]]:
     """Return the undeclared imports of a package, by the kind of dependency that would declare them.
 
-    `exec` is for the modules and launch files. `test` is for what only test/ imports; there, `exec` counts, too.
+    `exec` is for imports in modules and launch files. `test` is for imports that only files in test/ need, which may
+    also be declared as `exec` dependencies.
     """
-    runs = undeclared(imported(package, without=("test",)), manifest.needs("exec"))
+    runtime = undeclared(imported(package, without=("test",)), manifest.needs("exec"))
     tests = undeclared(imported(package, within=("test",)), manifest.needs("exec", "test"))
-    known = {each.module for each in runs}
-    return {"exec": runs, "test": tuple(each for each in tests if each.module not in known)}
+    runtime_modules = {item.module for item in runtime}
+    return {"exec": runtime, "test": tuple(item for item in tests if item.module not in runtime_modules)}
 
 
 def describe(imports: Collection[Import]) -> str:
-    """List imports with their places and the declarations that they need."""
-    return "; ".join(f"{each.files[0]} imports {each.module}{_called(each)}" for each in imports)
+    """List imports, each with a file that contains it and the name to declare."""
+    return "; ".join(f"{item.files[0]} imports {item.module}{_key_suffix(item)}" for item in imports)
 
 
-def _called(one: Import) -> str:
-    return f" ({one.keys[0]})" if one.keys[0] != one.module else ""
+def _key_suffix(item: Import) -> str:
+    return f" ({item.keys[0]})" if item.keys[0] != item.module else ""
 
 
 def _text(path: Path) -> str:

@@ -1,6 +1,6 @@
-"""The installed files of a Python package. Checks judge setup.py and setup.cfg by them, not by their text.
+"""Reads the installed files of a Python package. Checks judge setup.py and setup.cfg by these files, not by their text.
 
-Only plain files are read. No link is followed out of the install space, and nothing is imported.
+Only plain files are read. No link out of the install space is followed, and nothing is imported.
 """
 
 from __future__ import annotations
@@ -25,39 +25,39 @@ INDEX = Path("share/ament_index/resource_index/packages")
 class Installed:
     """A package's install prefix, `install/PACKAGE` in colcon's isolated layout."""
 
-    package: str  # its name
-    prefix: Path  # the folder
+    package: str  # the package's name
+    prefix: Path  # the folder of the prefix
     executables: tuple[str, ...]  # names in lib/PACKAGE, where `ros2 run` and launch files look
     misplaced: tuple[str, ...]  # names in bin/, where they do not
-    # Dotted names of the installed Python modules, packages included, of this package and any other.
+    # Dotted names of the installed Python modules and packages, including those that belong to another ROS package.
     modules: frozenset[str]
-    marker: bool  # whether the ament index knows the package
+    marker: bool  # whether the ament index lists the package
     shared: tuple[str, ...]  # paths below share/PACKAGE, without those that colcon itself adds
     # Files that setup.py itself installed, below the prefix. colcon adds a marker and package.xml.
     recorded: frozenset[str]
     extras: Mapping[str, tuple[str, ...]]  # the requirements of each extra, such as `test`
     metadata: Mapping[str, str]  # headers such as Version, License, Maintainer-email
-    programs: Mapping[str, str]  # the module of each program that a setup.py names
-    classifiers: tuple[str, ...]  # those that a setup.py names
+    programs: Mapping[str, str]  # the module of each program, both as named in setup.py
+    classifiers: tuple[str, ...]  # as listed in setup.py
 
     def read(self, name: str) -> bytes | None:
         """Return a file of share/PACKAGE, or None if it does not exist, is not a plain file or is too large."""
         return read_below(self.prefix, Path("share", self.package, name), MAX_BYTES)
 
 
-def look(install: Path, package: str) -> Installed:
-    """Return the installed files of a package, which are none if it was not installed."""
+def inspect_package(install: Path, package: str) -> Installed:
+    """Return the installed files of a package; there are none if it was not installed."""
     with reading(f"What colcon installed of {package}"):
-        return _look(install, package)
+        return _inspect_package(install, package)
 
 
-def _look(install: Path, package: str) -> Installed:
+def _inspect_package(install: Path, package: str) -> Installed:
     prefix = install / package
-    # The folder is named for the Python that built it, so only one exists.
+    # There is only one, because its name contains the version of Python that built the package.
     sites = [path for path in sorted(prefix.glob("lib/python3*/site-packages")) if not path.is_symlink()]
     modules = frozenset(name for site in sites for file in _files(site) if (name := _module(file)))
     eggs = [egg for site in sites for egg in sorted(site.glob("*-info")) if egg.is_dir() and not egg.is_symlink()]
-    own = [egg for egg in eggs if egg.name.lower().replace("-", "_").startswith(package.lower())]
+    own_metadata = [egg for egg in eggs if egg.name.lower().replace("-", "_").startswith(package.lower())]
     share = prefix / "share" / package
     return Installed(
         package=package,
@@ -66,12 +66,12 @@ def _look(install: Path, package: str) -> Installed:
         misplaced=_executables(prefix / "bin"),
         modules=modules,
         marker=read_plain(prefix / INDEX / package, MAX_BYTES) is not None,
-        shared=tuple(name for name in _files(share) if not _of_colcon(name)),
-        recorded=_recorded(install, package),
-        extras=_extras(_joined(own, "requires.txt")),
-        metadata=dict(HeaderParser().parsestr(_joined(own, "PKG-INFO")).items()),
-        programs=_programs(_joined(eggs, "entry_points.txt")),
-        classifiers=tuple(HeaderParser().parsestr(_joined(eggs, "PKG-INFO")).get_all("Classifier", [])),
+        shared=tuple(name for name in _files(share) if not _is_added_by_colcon(name)),
+        recorded=_recorded_files(install, package),
+        extras=_extras(_join_files(own_metadata, "requires.txt")),
+        metadata=dict(HeaderParser().parsestr(_join_files(own_metadata, "PKG-INFO")).items()),
+        programs=_programs(_join_files(eggs, "entry_points.txt")),
+        classifiers=tuple(HeaderParser().parsestr(_join_files(eggs, "PKG-INFO")).get_all("Classifier", [])),
     )
 
 
@@ -79,15 +79,15 @@ def _files(folder: Path) -> tuple[str, ...]:
     return tuple(map(str, plain_files(folder, MAX_FILES)))
 
 
-def _recorded(install: Path, package: str) -> frozenset[str]:
-    """Return what colcon had setup.py record of its own installing, beside the install space."""
+def _recorded_files(install: Path, package: str) -> frozenset[str]:
+    """Return the files that setup.py installed, according to the log that it writes in the build space."""
     log = read_below(install.parent / "build", Path(package, "install.log"), MAX_BYTES) or b""
     text = log.decode(errors="replace")
     below = [line.partition(f"/{install.name}/{package}/") for line in text.splitlines()]
     return frozenset(name for _, separator, name in below if separator)
 
 
-def _joined(folders: list[Path], name: str) -> str:
+def _join_files(folders: list[Path], name: str) -> str:
     return "\n".join((read_plain(folder / name, MAX_BYTES) or b"").decode(errors="replace") for folder in folders)
 
 
@@ -96,14 +96,14 @@ def _executables(folder: Path) -> tuple[str, ...]:
 
 
 def _module(file: str) -> str | None:
-    """Return the dotted name of a module's file, None for another file."""
+    """Return the dotted name of a module's file, or None for any other file."""
     if not file.endswith(".py"):
         return None
     parts = file.removesuffix(".py").split("/")
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def _of_colcon(name: str) -> bool:
+def _is_added_by_colcon(name: str) -> bool:
     return name.startswith("hook/") or (name.startswith("package.") and name != "package.xml")
 
 

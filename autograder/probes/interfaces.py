@@ -1,6 +1,6 @@
-"""Interface definitions against a contract: texts of .msg, .srv and .action files, compared with near misses named.
+"""Compares interface definitions, the texts of .msg, .srv and .action files, with a contract, and names near misses.
 
-Pure: texts go in, sentences come out. `rosidl_adapter`, the parser of the build itself, interprets the texts.
+The module reads no files and returns sentences. `rosidl_adapter`, which the build uses, parses the texts.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from autograder.plain_text import nearest
 
 MAX_BYTES = 64 * 1024
 PARTS = {"msg": ("",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
-READ_AS = {"msg": "message", "srv": "service", "action": "action"}  # in the names of the parser's functions
-_NEAR = 0.7  # of difflib's ratio: how alike two names must be to be one name, misspelt
+PARSER_KINDS = {"msg": "message", "srv": "service", "action": "action"}  # as in the names of the parser's functions
+_NEAR = 0.7  # names with at least this difflib ratio count as misspellings of each other
 
 
 class Unreadable(Exception):
-    """A definition that the build would refuse; the message says why."""
+    """A definition that the build would reject; the message says why."""
 
 
 class Aspect(str, Enum):
@@ -30,14 +30,14 @@ class Aspect(str, Enum):
 
     FIELDS = "fields"  # a field's name, place or order
     TYPES = "types"
-    BOUNDS = "bounds"  # how many elements or characters there may be
+    BOUNDS = "bounds"  # the maximum number of elements or characters
     DEFAULTS = "defaults"
     CONSTANTS = "constants"
 
 
 @dataclass(frozen=True)
 class Field:
-    """A field: `type` as one writes it (`float64[<=8]`, `std_msgs/Header`), `default` None when it has none."""
+    """A field: its `type` as a definition writes it (`float64[<=8]`, `std_msgs/Header`), its name and its default."""
 
     type: str
     name: str
@@ -45,7 +45,7 @@ class Field:
 
     @property
     def element(self) -> str:
-        """The type without bounds: `float64[<=8]` is a `float64[]`; `float64[8]`, of one size, is itself."""
+        """The type without bounds: `float64[]` for `float64[<=8]`. An array of fixed size has no bounds."""
         element, _, array = self.type.partition("[")
         plain = element.partition("<")[0]
         return plain if not array else f"{plain}[]" if array.startswith(("<", "]")) else f"{plain}[{array}"
@@ -88,12 +88,12 @@ def parse(package: str, path: str, text: str) -> Interface:
     """Read a definition.
 
     Args:
-        package: the name of the package that it belongs to.
+        package: the name of the package that contains it.
         path: `msg/Name.msg`, `srv/Name.srv` or `action/Name.action`.
-        text: the file's.
+        text: the text of the file.
 
     Raises:
-        Unreadable: the build would refuse it.
+        Unreadable: the build would reject it.
     """
     kind, _, file = path.partition("/")
     name = file.removesuffix(f".{kind}")
@@ -101,25 +101,25 @@ def parse(package: str, path: str, text: str) -> Interface:
         raise Unreadable(f"{path} is far larger than a definition.")
     try:
         with contextlib.redirect_stderr(io.StringIO()):
-            whole = getattr(rosidl.parser(), f"parse_{READ_AS[kind]}_string")(
+            spec = getattr(rosidl.parser(), f"parse_{PARSER_KINDS[kind]}_string")(
                 package, name, rosidl.without_comments(text)
             )
     except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
         raise Unreadable(f"{path} cannot be read: {_reason(error)}.") from None
-    return Interface(path, tuple(_part(package, getattr(whole, part) if part else whole) for part in PARTS[kind]))
+    return Interface(path, tuple(_part(package, getattr(spec, part) if part else spec) for part in PARTS[kind]))
 
 
 def compare(expected: Interface, actual: Interface) -> tuple[Difference, ...]:
-    """Return how a definition differs from its contract; the empty tuple if it does not.
+    """Return the differences of a definition from its contract.
 
-    Additional constants, and a default that equals the value without one, are not differences.
+    Additional constants are not differences, nor is a default that equals the value of a field without a default.
     """
     parts = range(len(expected.parts))
     return tuple(difference for index in parts for difference in _Comparison(expected, actual, index).differences())
 
 
 def elements(expected: Interface, aspect: Aspect) -> Iterator[Field | Constant]:
-    """Yield the constants or fields to which an aspect of a contract applies. Unbounded arrays have bounds, too."""
+    """Yield the fields or constants to which an aspect of a contract applies. Bounds also apply to unbounded arrays."""
     for part in expected.parts:
         if aspect is Aspect.CONSTANTS:
             yield from part.constants
@@ -130,31 +130,33 @@ def elements(expected: Interface, aspect: Aspect) -> Iterator[Field | Constant]:
 
 
 def share(expected: Interface, differences: Sequence[Difference]) -> float:
-    """Return which share of a contract's elements is right, in [0, 1]."""
+    """Return the share of a contract's elements that are correct, from 0 to 1."""
     elements = sum(len(part.fields) + len(part.constants) for part in expected.parts)
     return max(0.0, 1.0 - len(differences) / elements) if elements else float(not differences)
 
 
 def closest(path: str, present: Sequence[str]) -> str:
-    """Return the definition in `present` that is most likely meant by `path`, the empty string if none is."""
+    """Return the path in `present` that was probably meant to be `path`, or an empty string."""
     by_case = {other.casefold(): other for other in present}
     return by_case.get(nearest(path.casefold(), by_case, 0.8), "")
 
 
 class _Comparison:
-    """One part of a definition against the same part of its contract."""
+    """Compares one part of a definition with the same part of its contract."""
 
     def __init__(self, expected: Interface, actual: Interface, index: int) -> None:
         self._part = expected.parts[index]
         self._actual = actual.parts[index]
         others = [other for other in range(len(expected.parts)) if other != index]
         names = PARTS[expected.path.partition("/")[0]]
-        self._elsewhere = {
+        # For each name that another part contains against its contract, the name of that part.
+        self._actual_part = {
             name: names[other]
             for other in others
             for name in _names(actual.parts[other]) - _names(expected.parts[other])
         }
-        self._strayed = {
+        # The names that other parts should contain, but do not.
+        self._missing_elsewhere = {
             name for other in others for name in _names(expected.parts[other]) - _names(actual.parts[other])
         }
         self._name = names[index]
@@ -169,18 +171,18 @@ class _Comparison:
         yield from self._constants()
 
     def _names(self, expected: Mapping[str, Field], actual: Mapping[str, Field]) -> Iterator[Difference]:
-        constants = {constant.name.lower() for constant in self._part.constants}  # `_constants` speaks of those
+        constants = {constant.name.lower() for constant in self._part.constants}  # `_constants` reports those
         extra = [name for name in actual if name not in expected and name not in constants]
         for name in (name for name in expected if name not in actual):
-            if name in self._elsewhere:
-                yield self._difference(Aspect.FIELDS, f"{name} is in the {self._elsewhere[name]}, it belongs here")
-            elif near := nearest(name, (other for other in extra if other not in self._strayed), _NEAR):
+            if name in self._actual_part:
+                yield self._difference(Aspect.FIELDS, f"{name} is in the {self._actual_part[name]}, it belongs here")
+            elif near := nearest(name, (other for other in extra if other not in self._missing_elsewhere), _NEAR):
                 extra.remove(near)
                 yield self._difference(Aspect.FIELDS, f"a field is called {near}, it should be {name}")
             else:
                 yield self._difference(Aspect.FIELDS, f"the field {name} is missing")
         for name in extra:
-            if name not in self._strayed:
+            if name not in self._missing_elsewhere:
                 yield self._difference(Aspect.FIELDS, f"the contract has no field {name}")
         if expected.keys() == actual.keys() and list(expected) != list(actual):
             order, other = ", ".join(expected), ", ".join(actual)
@@ -192,25 +194,26 @@ class _Comparison:
         elif expected.type != actual.type:
             yield self._difference(Aspect.BOUNDS, f"{actual.name} is {actual.type}, it should be {expected.type}")
         if expected.default != actual.default and not (expected.default is None and not actual.default):
-            says = "no default" if actual.default is None else f"the default {actual.default!r}"
-            should = "none" if expected.default is None else repr(expected.default)
-            yield self._difference(Aspect.DEFAULTS, f"{actual.name} has {says}, it should be {should}")
+            actual_text = "no default" if actual.default is None else f"the default {actual.default!r}"
+            expected_text = "none" if expected.default is None else repr(expected.default)
+            yield self._difference(Aspect.DEFAULTS, f"{actual.name} has {actual_text}, it should be {expected_text}")
 
     def _constants(self) -> Iterator[Difference]:
         constants = {constant.name: constant for constant in self._actual.constants}
         fields = [field.name for field in self._actual.fields]
         extra = [name for name in constants if name not in _names(self._part)]
-        for constant in self._part.constants:
-            name, there = constant.name, constants.get(constant.name)
-            if there is not None:
-                if (there.type, there.value) != (constant.type, constant.value):
-                    says, should = f"{there.type} {there.value!r}", f"{constant.type} {constant.value!r}"
-                    yield self._difference(Aspect.CONSTANTS, f"the constant {name} is {says}, it should be {should}")
-            elif name in self._elsewhere:
-                where = self._elsewhere[name]
-                yield self._difference(Aspect.CONSTANTS, f"the constant {name} is in the {where}, it belongs here")
+        for expected in self._part.constants:
+            name, actual = expected.name, constants.get(expected.name)
+            if actual is not None:
+                if (actual.type, actual.value) != (expected.type, expected.value):
+                    texts = [f"{constant.type} {constant.value!r}" for constant in (actual, expected)]
+                    sentence = f"the constant {name} is {texts[0]}, it should be {texts[1]}"
+                    yield self._difference(Aspect.CONSTANTS, sentence)
+            elif name in self._actual_part:
+                part = self._actual_part[name]
+                yield self._difference(Aspect.CONSTANTS, f"the constant {name} is in the {part}, it belongs here")
             elif name.lower() in fields:
-                sentence = f"{name.lower()} is a field; a constant is written {constant.type} {name} = VALUE"
+                sentence = f"{name.lower()} is a field; a constant is written {expected.type} {name} = VALUE"
                 yield self._difference(Aspect.CONSTANTS, sentence)
             elif near := nearest(name, extra, _NEAR):
                 yield self._difference(Aspect.CONSTANTS, f"a constant is called {near}, it should be {name}")
@@ -226,25 +229,26 @@ def _names(part: Part) -> set[str]:
 
 
 def _part(package: str, spec: Any) -> Part:
-    own = f"{package}/"
+    prefix = f"{package}/"
     return Part(
         tuple(
-            Field(str(field.type).removeprefix(own), field.name, _plain(field.default_value)) for field in spec.fields
+            Field(str(field.type).removeprefix(prefix), field.name, _plain(field.default_value))
+            for field in spec.fields
         ),
-        tuple(Constant(str(each.type), each.name, _plain(each.value)) for each in spec.constants),
+        tuple(Constant(str(constant.type), constant.name, _plain(constant.value)) for constant in spec.constants),
     )
 
 
 def _plain(value: Any) -> Any:
-    """Return a default or a constant's value as Python has it; the parser keeps the quotes of some strings."""
+    """Return the value of a default or a constant. The parser leaves some strings in quotes."""
     return value.strip("\"'") if isinstance(value, str) else value
 
 
 def _reason(error: Exception) -> str:
-    """Put the parser's exception into words; some hold only the line, or nothing."""
-    about = {
+    """Describe an exception of the parser. Some have no text, or only the line of the definition."""
+    advice = {
         "InvalidServiceSpecification": "one line --- parts the request from the response",
         "InvalidActionSpecification": "two lines --- part goal, result and feedback",
     }.get(type(error).__name__, "a field is written `type name`, a constant `type NAME = value`")
     text = str(error).strip()
-    return f"{text} ({about})" if text else about
+    return f"{text} ({advice})" if text else advice

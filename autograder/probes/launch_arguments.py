@@ -1,4 +1,4 @@
-"""The arguments that a launch file declares, as `ros2 launch --show-args` prints them."""
+"""Parses the arguments that a launch file declares, as `ros2 launch --show-args` prints them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-_NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # a star: it is used on condition only
+_NAME = re.compile(r"^    '(?P<name>.+)':\*?$")  # the star marks an argument that is declared under a condition
 _DEFAULT = re.compile(r"^        \(default: (?P<default>.*)\)$")
 _CHOICES = ("Valid choices are: ", "One of: ")  # the text before a list or a tuple
 _QUOTED = re.compile(r"'([^']*)'")
@@ -18,10 +18,10 @@ class Argument:
     """A launch argument, as `ros2 launch -s` shows it."""
 
     name: str
-    description: str  # its description, or an empty string
-    default: str | None  # the text of its default, None if it has to be given or its default is worked out
-    choices: tuple[str, ...]  # the values that are allowed; empty if any is
-    is_worked_out: bool = False  # whether it has a default whose text is known only when the launch runs
+    description: str  # empty if there is none
+    default: str | None  # the text of the default; None if there is none, or it is computed
+    choices: tuple[str, ...]  # the values that are allowed; empty if all are
+    is_computed: bool = False  # whether the text of the default is known only when the launch runs
 
 
 def parse_arguments(text: str) -> dict[str, Argument]:
@@ -37,20 +37,20 @@ def parse_arguments(text: str) -> dict[str, Argument]:
 
 
 def _argument(name: str, lines: Sequence[str]) -> Argument:
-    """Return an argument of the lines below its name."""
+    """Parse an argument from the lines below its name."""
     description: list[str] = []
     default: str | None = None
-    is_worked_out = False
+    is_computed = False
     choices: tuple[str, ...] = ()
     for line in lines:
-        words = line.strip()
+        text = line.strip()
         if match := _DEFAULT.match(line):
-            is_worked_out = not _TEXTS.fullmatch(match["default"])
-            default = None if is_worked_out else "".join(_QUOTED.findall(match["default"]))
+            is_computed = not _TEXTS.fullmatch(match["default"])
+            default = None if is_computed else "".join(_QUOTED.findall(match["default"]))
             continue
         for phrase in _CHOICES:
-            before, separator, listed = words.rpartition(phrase)
-            if separator and listed.startswith(("[", "(")) and listed.endswith(("]", ")")):
-                words, choices = before.strip(), tuple(_QUOTED.findall(listed))
-        description += [words] if words and words != "no description given" else []
-    return Argument(name, " ".join(description), default, choices, is_worked_out)
+            before, separator, list_text = text.rpartition(phrase)
+            if separator and list_text.startswith(("[", "(")) and list_text.endswith(("]", ")")):
+                text, choices = before.strip(), tuple(_QUOTED.findall(list_text))
+        description += [text] if text and text != "no description given" else []
+    return Argument(name, " ".join(description), default, choices, is_computed)

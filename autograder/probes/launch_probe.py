@@ -22,26 +22,26 @@ from autograder.run.workspace import Workspace
 from autograder.submission.reading import reading
 from autograder.suite import CheckFailed, expect
 
-START_SECONDS = 40.0  # real time until all nodes are seen, generous for a machine that is busy
-QUIET_SECONDS = 1.5  # real time without a change, once each program that runs has its node
-STOP_SECONDS = 20.0  # real time for the end; nodes that end cleanly need 0.2
-SHOW_SECONDS = 30.0
+START_SECONDS = 40.0  # real time to wait for all nodes; long enough for a busy machine
+QUIET_SECONDS = 1.5  # real time without a change after which `settle` expects no more nodes
+STOP_SECONDS = 20.0  # real time to wait for the end of the launch; nodes that end cleanly need 0.2 s
+SHOW_SECONDS = 30.0  # real time for `ros2 launch -s`
 KILLED = "-9"  # the exit code of a process that neither SIGINT nor SIGTERM has ended
 
-_CAUGHT = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<what>.+(?:\n - .+)?)")
+_EXCEPTION = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<reason>.+(?:\n - .+)?)")
 _NOT_READ = "Caught multiple exceptions when trying to load file"
 _PLACE = re.compile(r'^  File "(?P<file>ws/src/[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
-_LABEL = r"\[(?P<label>(?P<name>[^\[\]\n]+)-\d+)\]: "  # of a program: its name and its number
+_LABEL = r"\[(?P<label>(?P<name>[^\[\]\n]+)-\d+)\]: "  # the name and the number of a program
 _STARTED = re.compile(rf"{_LABEL}process started with pid")
 _ENDED = re.compile(rf"{_LABEL}process has (?:finished cleanly|died)")
 _DIED = re.compile(rf"{_LABEL}process has died \[pid \d+, exit code (?P<code>-?\d+)")
 _DEAD = re.compile(rf"{_LABEL}process has died")
 _NODE, _WORD = "__node:=", re.compile(r"\w+")
-_RAISED = re.compile(r"^\[[^\]\n]+\] (?P<what>[\w.]*(?:Error|Exception)\b.*)$", re.MULTILINE)
+_RAISED = re.compile(r"^\[[^\]\n]+\] (?P<error>[\w.]*(?:Error|Exception)\b.*)$", re.MULTILINE)
 
 
-def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, Argument]:
-    """Ask `ros2 launch -s` which arguments an installed launch file of a package declares; return them by name.
+def declared_arguments(workspace: Workspace, package: str, file: str) -> dict[str, Argument]:
+    """Return the arguments that an installed launch file declares, by name, as `ros2 launch -s` prints them.
 
     Raises:
         CheckFailed: the file is not installed, or cannot be read.
@@ -55,16 +55,16 @@ def shown_arguments(workspace: Workspace, package: str, file: str) -> dict[str, 
 
 
 def expect_argument(arguments: Mapping[str, Argument], name: str, default: str, *, described: bool = True) -> None:
-    """Fail the check unless an argument of `shown_arguments` has this default's text and, if asked, a description.
+    """Fail the check unless an argument has the expected default and, if `described`, a description.
 
-    A computed default passes: a launch without arguments shows its value.
+    A computed default passes, because only a launch without arguments shows its value.
     """
-    there = ", ".join(arguments) or "none"
-    expect(name in arguments, f"The launch file declares no argument {name}; it declares: {there}.")
+    names = ", ".join(arguments) or "none"
+    expect(name in arguments, f"The launch file declares no argument {name}; it declares: {names}.")
     argument = arguments[name]
-    shown = "no default" if argument.default is None else f"the default {argument.default!r}"
-    right = argument.default == default or argument.is_worked_out
-    expect(right, f"The argument {name} has {shown}, instead of {default!r}.", fraction=0.5)
+    actual = "no default" if argument.default is None else f"the default {argument.default!r}"
+    is_right = argument.default == default or argument.is_computed
+    expect(is_right, f"The argument {name} has {actual}, instead of {default!r}.", fraction=0.5)
     expect(
         bool(argument.description) or not described,
         f"The argument {name} has no description: `ros2 launch -s` would not say what it is for.",
@@ -73,67 +73,66 @@ def expect_argument(arguments: Mapping[str, Argument], name: str, default: str, 
 
 
 def settle(harness: LaunchHarness, expected: Collection[str]) -> list[str]:
-    """Wait for the nodes that a launch should start; return the nodes that are seen in the end.
+    """Wait for the nodes that a launch should start; return the nodes in the graph after the wait.
 
-    Returns early if the launch has ended, or if every running program has been seen as a node, and these nodes are the
-    expected ones or have not changed for a while. A name that two nodes should have is listed in `expected` twice.
+    Returns early if the launch has ended, or if every running program has a node in the graph, and these nodes are the
+    expected ones or have not changed for a while. If two nodes should have the same name, `expected` contains it twice.
     """
     state: tuple[object, ...] = ()
-    since = time.monotonic()
+    unchanged_since = time.monotonic()
 
-    def done() -> bool:
-        nonlocal state, since
-        nodes, running = harness.nodes(), len(harness.programs())
-        if nodes == sorted(expected) and running == len(expected):
+    def is_settled() -> bool:
+        nonlocal state, unchanged_since
+        nodes, program_count = harness.nodes(), len(harness.programs())
+        if nodes == sorted(expected) and program_count == len(expected):
             return True
-        if (nodes, running) != state or len(nodes) < running or not running:
-            state, since = (nodes, running), time.monotonic()
-        return time.monotonic() - since > QUIET_SECONDS
+        if (nodes, program_count) != state or len(nodes) < program_count or not program_count:
+            state, unchanged_since = (nodes, program_count), time.monotonic()
+        return time.monotonic() - unchanged_since > QUIET_SECONDS
 
-    harness.wait_for(done, START_SECONDS)
+    harness.wait_for(is_settled, START_SECONDS)
     require_written(harness.output)
     return harness.nodes()
 
 
 def expect_nodes(harness: LaunchHarness, expected: Collection[str]) -> None:
-    """Fail the check unless exactly the wanted nodes run; waits for them. The message names near misses."""
+    """Wait for the expected nodes; fail the check unless exactly these run. The message names near misses."""
     nodes = settle(harness, expected)
     if nodes == sorted(expected):
         return
-    seen = f"The graph holds {', '.join(nodes)}" if nodes else "No node is up"
+    summary = f"The graph holds {', '.join(nodes)}" if nodes else "No node is up"
     missing = sorted((Counter(expected) - Counter(nodes)).elements())
     extra = sorted((Counter(nodes) - Counter(expected)).elements())
-    what = [f"{', '.join(missing)} missing"] if missing else []
-    what += [f"{', '.join(extra)} not asked for"] if extra else []
+    differences = [f"{', '.join(missing)} missing"] if missing else []
+    differences += [f"{', '.join(extra)} not asked for"] if extra else []
     near = [f"{other} runs instead of {name}" for name in missing for other in extra if _base(name) == _base(other)]
     reason = failure(harness.output)
-    parts = [f"{seen}: {'; '.join(near or what)}.", reason and f"What the launch said: {reason}"]
+    parts = [f"{summary}: {'; '.join(near or differences)}.", reason and f"What the launch said: {reason}"]
     raise CheckFailed(" ".join(filter(None, parts)))
 
 
 def expect_parameters(harness: LaunchHarness, node: str, expected: Mapping[str, Value]) -> None:
-    """Fail the check unless a node, by its full name, has these values; numbers to nine digits, types exactly.
+    """Fail the check unless the node with this full name has these values, according to `parameters.same`.
 
-    If an exception ends a launch, it stops its nodes, and one of them may still answer before it ends. That answer does
-    not count.
+    If an exception ends a launch, the launch stops its nodes, and a node may still answer before it ends. That answer
+    does not count.
     """
     actual = harness.parameters(node, list(expected))
-    if actual is None or _CAUGHT.search(harness.output):
+    if actual is None or _EXCEPTION.search(harness.output):
         raise CheckFailed(
             f"{node} does not answer when it is asked for its parameters. {failure(harness.output)}".strip()
         )
     for name, value in expected.items():
-        given = actual[name]
-        expect(same(given, value), f"{node} has {name} = {given!r}, instead of {value!r}.")
+        expect(same(actual[name], value), f"{node} has {name} = {actual[name]!r}, instead of {value!r}.")
 
 
 def expect_clean_stop(harness: LaunchHarness) -> None:
-    """Fail the check unless Ctrl-C ends the launch with exit status 0, every process cleanly, and leaves none.
+    """Fail the check unless Ctrl-C ends the launch with exit status 0, and each process ends cleanly.
 
-    Where a process had to be killed, a second launch decides. Once in some two thousand ends of right nodes that leave
-    together, Fast DDS 2.14 deadlocks: `DomainParticipant::set_listener` waits for a callback of discovery to end, which
-    waits for it. Such a node ends neither on SIGINT nor on SIGTERM. A program that does not heed Ctrl-C never does. A
-    second launch also decides where rclpy lost a race, or crashed.
+    If a process had to be killed, a second launch decides. When correct nodes end together, Fast DDS 2.14 deadlocks in
+    about one of two thousand cases: `DomainParticipant::set_listener` and a callback of discovery wait for each other.
+    Such a node ends neither on SIGINT nor on SIGTERM. A program that ignores Ctrl-C fails both times. A second launch
+    also decides if rclpy lost a race, or crashed.
     """
     nodes = harness.nodes()
     died = _died_of_ctrl_c(harness)
@@ -146,10 +145,10 @@ def expect_clean_stop(harness: LaunchHarness) -> None:
 
 
 def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
-    """Interrupt a launch, which has to end; return name and exit code of each process that did not end cleanly.
+    """Interrupt a launch, which then has to end; return the name and exit code of each process that ended badly.
 
-    A node is visible before its constructor has ended, and there its `main` does not catch Ctrl-C. A node that answers
-    a request is spinning. The wait for a node that does not answer is short.
+    A node is visible before its constructor has returned, and until then its `main` does not catch Ctrl-C. A node that
+    answers a request is spinning, so each node gets one first. The wait for a node that does not answer is short.
     """
     for node in harness.nodes():
         harness.parameters(node, ["use_sim_time"])
@@ -158,12 +157,12 @@ def _died_of_ctrl_c(harness: LaunchHarness) -> list[tuple[str, str]]:
 
 
 def _lost_a_race(output: str) -> bool:
-    """Return whether by a launch's output one of the programs that died did so because rclpy lost a race."""
+    """Return whether one of the programs that died did so because rclpy lost a race."""
     lines_of: dict[str, list[str]] = {f"[{match['label']}": [] for match in _DEAD.finditer(output)}
     for line in output.splitlines():
-        label, _, words = line.partition("] ")
+        label, _, text = line.partition("] ")
         if label in lines_of:
-            lines_of[label].append(words)
+            lines_of[label].append(text)
     return any(lost_a_race("\n".join(lines)) for lines in lines_of.values())
 
 
@@ -175,47 +174,50 @@ def expect_stopped(stop: Stop) -> None:
 
 
 def started(output: str) -> list[str]:
-    """Return the programs that a launch has started by its output, in order, without their numbers."""
+    """Return the programs that a launch has started according to its output, in order and without their numbers."""
     return [match["name"] for match in _STARTED.finditer(output)]
 
 
 def ended(output: str) -> list[str]:
-    """Return the programs that have ended by a launch's output, in order, without their numbers."""
+    """Return the programs that have ended according to the launch's output, in order and without their numbers."""
     return [match["name"] for match in _ENDED.finditer(output)]
 
 
 def node_names(output: str, program: str) -> set[str]:
-    """Return the names that a launch gave to nodes of a program that has died, whose commands its output repeats."""
+    """Return the names that a launch gave to the nodes of a program that has died.
+
+    They are in the command of the program, which the launch's output repeats.
+    """
     names = set()
     for line in output.splitlines():
         if (died := _DEAD.search(line)) and died["name"] == program:
-            _, given, rest = line[died.end() :].rpartition(_NODE)
-            names |= {match[0]} if given and (match := _WORD.match(rest)) else set()
+            _, separator, name = line[died.end() :].rpartition(_NODE)
+            names |= {match[0]} if separator and (match := _WORD.match(name)) else set()
     return names
 
 
 def failure(output: str) -> str:
-    """Return a line that says why a launch failed, from its output, or an empty string."""
-    if caught := _CAUGHT.search(output):
-        return " ".join(caught["what"].split())
+    """Return one line of a launch's output that says why it failed, or an empty string."""
+    if caught := _EXCEPTION.search(output):
+        return " ".join(caught["reason"].split())
     died = [f"{match['name']} died with exit code {match['code']}" for match in _DIED.finditer(output)]
-    raised = [match["what"].strip() for match in _RAISED.finditer(output)]
+    errors = [match["error"].strip() for match in _RAISED.finditer(output)]
     if not died:
-        # An argument that is refused, a package that is not there: `ros2 launch` says so last.
+        # `ros2 launch` ends with a line about a rejected argument or a missing package.
         return _last_line(output) if "error" in _last_line(output).lower() else ""
-    return f"{', '.join(died)}{f' ({raised[-1]})' if raised else ''}"
+    return f"{', '.join(died)}{f' ({errors[-1]})' if errors else ''}"
 
 
 def unreadable(output: str) -> str:
-    """Return in a line why `ros2 launch` could not read a launch file, with the place in the student's file."""
+    """Return one line that says why `ros2 launch` could not read a launch file, and where."""
     lines = output.split("\n")
     reasons = (after[3:] for line, after in pairwise(lines) if _NOT_READ in line and after.startswith(" - "))
-    what = next(filter(None, reasons), "") or _last_line(output)
+    reason = next(filter(None, reasons), "") or _last_line(output)
     places = _PLACE.findall(with_source_paths(output))
-    if not places or ", line " in what:
-        return what
+    if not places or ", line " in reason:
+        return reason
     file, line = places[-1]
-    return f"{what} ({file}, line {line})"
+    return f"{reason} ({file}, line {line})"
 
 
 def require_written(output: str) -> None:
@@ -241,11 +243,11 @@ def with_files(
     """Return a copy of a workspace's install space in which files and programs of a package are replaced.
 
     Args:
-        workspace: the built workspace; it is left as it is.
-        name: of the copy, one that no other copy has.
+        workspace: the built workspace, which is not changed.
+        name: the copy's name, different from that of any other copy.
         package: the package.
-        files: texts by path below `share/PACKAGE`.
-        programs: texts of executables, by name.
+        files: the new text of each file, by its path below `share/PACKAGE`.
+        programs: the new text of each executable, by its name.
     """
     root = workspace.root.with_name(f"{workspace.root.name}-{name}")  # not in scratch, where students' code may write
     with reading("What colcon installed"):

@@ -1,6 +1,6 @@
 """Marks secret files with random words, so that the verification can search students' output for them.
 
-Each run draws a new word. It consists of ten different syllables, which no text contains by chance, in any spelling.
+Each run draws a new word of ten different syllables. No text contains such a word by chance.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ import random
 import re
 
 SYLLABLES = ("ba", "do", "fe", "gi", "ka", "lo", "mu", "ne", "pi", "ra", "so", "tu", "ve", "wa", "xi", "zu")
-LENGTH = 10
-_MARKER = re.compile(f"(?=((?:{'|'.join(SYLLABLES)}){{{LENGTH}}}))")  # two markers may overlap
+LENGTH = 10  # syllables of a marker
+_MARKER = re.compile(f"(?=((?:{'|'.join(SYLLABLES)}){{{LENGTH}}}))")  # a lookahead, because markers may overlap
 
 
 def draw_marker(draw: random.Random) -> str:
@@ -19,6 +19,6 @@ def draw_marker(draw: random.Random) -> str:
 
 
 def markers_in(text: str) -> set[str]:
-    """Return the words that a text holds."""
+    """Return the markers that a text contains."""
     markers: set[str] = set(_MARKER.findall(text))
-    return {word for word in markers if len({word[at : at + 2] for at in range(0, len(word), 2)}) == LENGTH}
+    return {word for word in markers if len({word[start : start + 2] for start in range(0, len(word), 2)}) == LENGTH}

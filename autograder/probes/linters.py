@@ -1,9 +1,9 @@
 """Runs the linters on a student's package, as the grader's own check.
 
 A test called `test_flake8` does not necessarily call flake8. So the tests that `ros2 pkg create` writes replace the
-student's. They see only the Python files of the package, below a folder from which nothing is imported: no
-configuration, no conftest.py, no module with a linter's name. Comments that disable a linter have no effect. Then the
-student's own tests have to find mistakes of style in a copy.
+student's. They read only the Python files of the package, in a subfolder from which nothing is imported. Therefore, a
+configuration, a conftest.py, a module with a linter's name or a comment that disables a linter has no effect. After
+that, the student's own tests have to find mistakes of style in a copy.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 from autograder.run.workspace import Workspace
 from autograder.suite import CheckFailed
 
-BELOW = "package"  # the folder of a package's files
-# Comments that make flake8, pycodestyle and pydocstyle skip a line or a file. A replacement has the same length.
-_SWITCH = re.compile(rb"(#\s*(?:flake8\s*[:=]\s*)?no)(qa|pep8)", re.IGNORECASE)
+SUBFOLDER = "package"  # the folder for the package's files
+# Comments that make flake8, pycodestyle and pydocstyle skip a line or a file. They are replaced by equally long text.
+_DISABLING_COMMENT = re.compile(rb"(#\s*(?:flake8\s*[:=]\s*)?no)(qa|pep8)", re.IGNORECASE)
 # The output format of each linter.
 _FINDINGS = {
     "test_flake8": re.compile(r"^\./(\S+:\d+:\d+: [A-Z]+\d+ .*)$", re.MULTILINE),
@@ -30,33 +30,33 @@ _FINDINGS = {
 
 
 def expect_tidy(workspace: Workspace, source: Source, tests: Collection[str], fraction: float = 0.0) -> None:
-    """Fail the check if a linter finds something that its own test did not report, or if its test never finds anything.
+    """Fail the check if a linter finds a mistake that the student's test misses, or if a test passes on an untidy copy.
 
     Args:
         workspace: the built workspace.
         source: the package.
-        tests: its tests that run the linters, `module::name`.
-        fraction: the part of the points for an untidy package.
+        tests: the student's tests that run the linters, `module::name`.
+        fraction: the share of the points for an untidy package.
     """
-    for name, finding in objections(workspace, source).items():
+    for name, finding in lint(workspace, source).items():
         sentence = f"{name} passes, but its linter finds something in the package: {finding}"
         raise CheckFailed(sentence, fraction=fraction)
     expect_failures(workspace, source, tests, {f"{source.package}/untidy.py": UNTIDY, "test/untidy.py": UNTIDY})
 
 
-def _switched_on(comment: re.Match[bytes]) -> bytes:
+def _without_effect(comment: re.Match[bytes]) -> bytes:
     return comment[1] + b"x" * len(comment[2])
 
 
-def objections(workspace: Workspace, source: Source) -> dict[str, str]:
-    """Run flake8 and pep257 on a package; return the first that each finds, by the name of its test.
+def lint(workspace: Workspace, source: Source) -> dict[str, str]:
+    """Run flake8 and pep257 on a package; return the first finding of each, by the name of its test.
 
-    The student's own tests of this name are not looked at.
+    The student's own tests with these names are not linted.
     """
     tests = [f"{name}.py" for name in _FINDINGS]
-    own = {f"test/{name}" for name in tests}
-    seen = {name: data for name, data in source.files.items() if name.endswith(".py") and name not in own}
-    files = {f"{BELOW}/{name}": _SWITCH.sub(_switched_on, data) for name, data in seen.items()}
+    own_tests = {f"test/{name}" for name in tests}
+    sources = {name: data for name, data in source.files.items() if name.endswith(".py") and name not in own_tests}
+    files = {f"{SUBFOLDER}/{name}": _DISABLING_COMMENT.sub(_without_effect, data) for name, data in sources.items()}
     files |= {f"test/{name}": PYTHON_TESTS[name].encode() for name in tests}
     empty = replace(workspace, root=workspace.root.with_name(f"{workspace.root.name}-style"))
     empty.install.mkdir(parents=True, exist_ok=True)
@@ -67,6 +67,6 @@ def objections(workspace: Workspace, source: Source) -> dict[str, str]:
         if test not in report.executed or test in report.failed:
             match = finding.search(report.output)
             messages[name] = (
-                match[1].removeprefix(f"{BELOW}/") if match else report.claims.messages.get(test, "it did not run")
+                match[1].removeprefix(f"{SUBFOLDER}/") if match else report.claims.messages.get(test, "it did not run")
             )
     return messages

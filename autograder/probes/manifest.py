@@ -1,4 +1,4 @@
-"""A package's manifest, package.xml, as rosdep and colcon read it: parsed by catkin_pkg, never executed."""
+"""Reads a package's manifest, package.xml, with catkin_pkg, as rosdep and colcon do."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ class Manifest:
     format: int
     licences: tuple[str, ...]  # each <license>, as written
     maintainers: tuple[tuple[str, str], ...]  # each (name, e-mail)
-    build_type: str  # the text of <export>; without it, ROS takes the package for an old CMake one
-    depends: Mapping[str, frozenset[str]]  # the names by kind, one of `KINDS`; those whose condition holds in this ROS
-    groups: frozenset[str]  # its dependency groups
+    build_type: str  # the text of <build_type> in <export>; without it, ROS takes the package for an old CMake one
+    depends: Mapping[str, frozenset[str]]  # names by kind, if their condition is true in this ROS
+    groups: frozenset[str]  # the dependency groups
 
     def needs(self, *kinds: str) -> frozenset[str]:
         """Return the names of the dependencies of the given kinds; of all kinds if none is given."""
@@ -42,28 +42,28 @@ class Manifest:
 
 
 def read(package: Path) -> Manifest:
-    """Read the manifest of the package in a folder. A CheckFailed says why ROS would not accept it."""
-    return parse(_text(package), _where(package))
+    """Read the manifest of the package in a folder. Raise a CheckFailed with the reason if ROS rejects it."""
+    return parse(_text(package), _file_name(package))
 
 
 def read_leniently(package: Path) -> Manifest:
-    """Read the tags of a manifest, even if ROS rejects it as a whole. A CheckFailed says why it has none.
+    """Read the tags of a manifest, even if ROS rejects it as a whole. Raise a CheckFailed if it is not XML.
 
-    One that ROS takes is read as by `read`. Otherwise no condition counts.
+    A manifest that ROS accepts is read as by `read`. In any other, conditions are ignored.
     """
-    text, where = _text(package), _where(package)
+    text, file_name = _text(package), _file_name(package)
     try:
-        return parse(text, where)
+        return parse(text, file_name)
     except CheckFailed:
-        _refuse_unsafe(text, where)
+        _refuse_unsafe(text, file_name)
         try:
             root = ElementTree.fromstring(text)
         except ElementTree.ParseError as error:
-            raise CheckFailed(f"{where} is not well-formed XML: {error}") from None
-        return _of_tags(root)
+            raise CheckFailed(f"{file_name} is not well-formed XML: {error}") from None
+        return _parse_tags(root)
 
 
-def _where(package: Path) -> str:
+def _file_name(package: Path) -> str:
     return f"{package.name}/{MANIFEST}"
 
 
@@ -80,22 +80,22 @@ def _text(package: Path) -> str:
         raise CheckFailed(f"{package.name}/{MANIFEST} is not UTF-8 text.") from None
 
 
-def parse(text: str, where: str = MANIFEST) -> Manifest:
-    """Read a manifest's text; `where` names it in a CheckFailed, which says why ROS would refuse it."""
-    _refuse_unsafe(text, where)
+def parse(text: str, file_name: str = MANIFEST) -> Manifest:
+    """Read a manifest's text. If ROS rejects it, raise a CheckFailed with the reason, which calls it `file_name`."""
+    _refuse_unsafe(text, file_name)
     try:
-        package = parse_package_string(text, where)
+        package = parse_package_string(text, file_name)
     except InvalidPackage as error:
-        raise CheckFailed(f"ROS refuses {where}: {_reason(error)}") from None
-    except Exception as error:  # expat's and catkin_pkg's own, such as TypeError for a file of bytes
-        raise CheckFailed(f"{where} is not well-formed XML: {error}") from None
+        raise CheckFailed(f"ROS refuses {file_name}: {_reason(error)}") from None
+    except Exception as error:  # from expat or catkin_pkg, such as TypeError for a file of bytes
+        raise CheckFailed(f"{file_name} is not well-formed XML: {error}") from None
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)  # of pyparsing, in catkin_pkg
+            warnings.simplefilter("ignore", DeprecationWarning)  # from pyparsing, which catkin_pkg uses
             package.evaluate_conditions(DISTRIBUTION.variables)
     except (ValueError, RecursionError) as error:
-        raise CheckFailed(f"A condition in {where} cannot be read: {error}") from None
-    exports = [each for each in package.exports if each.evaluated_condition]
+        raise CheckFailed(f"A condition in {file_name} cannot be read: {error}") from None
+    exports = [export for export in package.exports if export.evaluated_condition]
     return Manifest(
         name=package.name,
         version=package.version,
@@ -103,41 +103,41 @@ def parse(text: str, where: str = MANIFEST) -> Manifest:
         format=package.package_format,
         licences=tuple(str(licence) for licence in package.licenses),
         maintainers=tuple((person.name, person.email or "") for person in package.maintainers),
-        build_type=next((each.content or "" for each in exports if each.tagname == "build_type"), ""),
+        build_type=next((export.content or "" for export in exports if export.tagname == "build_type"), ""),
         depends={
-            kind: frozenset(each.name for each in getattr(package, f"{kind}_depends") if each.evaluated_condition)
+            kind: frozenset(item.name for item in getattr(package, f"{kind}_depends") if item.evaluated_condition)
             for kind in KINDS
         },
-        groups=frozenset(each.name for each in package.member_of_groups if each.evaluated_condition),
+        groups=frozenset(group.name for group in package.member_of_groups if group.evaluated_condition),
     )
 
 
-def _refuse_unsafe(text: str, where: str) -> None:
+def _refuse_unsafe(text: str, file_name: str) -> None:
     if STILL_TO_BE_WRITTEN in text:
-        raise CheckFailed(f"{where} is still to be written.")
+        raise CheckFailed(f"{file_name} is still to be written.")
     # No manifest needs a document type, and one can make a small file huge.
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise CheckFailed(f"{where} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")
+        raise CheckFailed(f"{file_name} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")
 
 
-def _of_tags(root: ElementTree.Element) -> Manifest:
+def _parse_tags(root: ElementTree.Element) -> Manifest:
     def texts(tag: str) -> tuple[str, ...]:
-        return tuple(" ".join("".join(each.itertext()).split()) for each in root.findall(tag))
+        return tuple(" ".join("".join(element.itertext()).split()) for element in root.findall(tag))
 
-    plain = ("build", "build_export", "exec")  # the meanings of <depend>
-    told = root.get("format", "1")
+    depend_kinds = ("build", "build_export", "exec")  # the kinds that <depend> stands for
+    format_text = root.get("format", "1")
     return Manifest(
         name="".join(texts("name")[:1]),
         version="".join(texts("version")[:1]),
         description="".join(texts("description")[:1]),
-        format=int(told) if told in ("1", "2", "3") else 0,
+        format=int(format_text) if format_text in ("1", "2", "3") else 0,
         licences=texts("license"),
         maintainers=tuple(
-            ("".join(each.itertext()).strip(), each.get("email", "")) for each in root.findall("maintainer")
+            ("".join(element.itertext()).strip(), element.get("email", "")) for element in root.findall("maintainer")
         ),
         build_type="".join(texts("export/build_type")[:1]),
         depends={
-            kind: frozenset(texts(f"{kind}_depend")) | frozenset(texts("depend") if kind in plain else ())
+            kind: frozenset(texts(f"{kind}_depend")) | frozenset(texts("depend") if kind in depend_kinds else ())
             for kind in KINDS
         },
         groups=frozenset(texts("member_of_group")),
@@ -145,7 +145,7 @@ def _of_tags(root: ElementTree.Element) -> Manifest:
 
 
 def _reason(error: InvalidPackage) -> str:
-    """Return catkin_pkg's complaint without the headline that repeats the path."""
+    """Return catkin_pkg's message without the headline, which repeats the path."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     messages = [line for line in lines if not line.startswith("Error(s) in ")] or lines
     return "; ".join(messages).replace(":; ", ": ")

@@ -10,12 +10,12 @@ from statistics import median
 from autograder.harness import ReceivedMessage
 from autograder.run.time_record import LOCKSTEP, REAL
 
-TOLERANCE = 0.08  # of the period: an error of a tenth is seen
-JITTER = {LOCKSTEP: 0.0, REAL: 0.01}  # s by which a pause may be wrong besides
-# Which share of the pauses between messages has to be right. In real time, a busy machine holds some messages up, and
+TOLERANCE = 0.08  # share of the period; small enough to detect an error of 10 %
+JITTER = {LOCKSTEP: 0.0, REAL: 0.01}  # s, added to the tolerance of each pause
+# The share of the pauses between messages that have to be right. In real time, a busy machine delays some messages, and
 # the pauses before and after each of these are wrong.
-RIGHT = {LOCKSTEP: 0.9, REAL: 0.5}
-MOST = 2.0  # mean pauses may be so many times as long as they should be, where time is real and messages get lost
+MIN_SHARE = {LOCKSTEP: 0.9, REAL: 0.5}
+MAX_FACTOR = 2.0  # the longest mean pause in real time, in periods; messages may get lost
 
 
 def mean_period(messages: Sequence[ReceivedMessage]) -> float:
@@ -24,28 +24,28 @@ def mean_period(messages: Sequence[ReceivedMessage]) -> float:
 
 
 def is_paced(messages: Sequence[ReceivedMessage], period: float, time: str) -> bool:
-    """Return whether messages come one by one, with a pause of `period` s between them.
+    """Return whether messages were received one by one, with a pause of `period` s between them.
 
-    Two messages at once and then a double pause are wrong, although the number is right. In real time, single pauses
-    have a larger tolerance, but the median does not: a program can choose to run in real time.
+    Two messages at once followed by a double pause are wrong, although the number is right. In real time, the tolerance
+    is larger for single pauses, but not for the median, because a program can choose to run in real time.
 
     Args:
-        messages: in the order in which they came; two or more.
+        messages: two or more messages, in the order in which they were received.
         period: the period in s.
-        time: the harness's, "lockstep" or "real".
+        time: the time of the harness, "lockstep" or "real".
     """
-    off = TOLERANCE * period + JITTER[time]
+    tolerance = TOLERANCE * period + JITTER[time]
     pauses = [after.seconds - before.seconds for before, after in pairwise(messages)]
-    right = [abs(pause - period) <= off for pause in pauses]
-    if not right or abs(median(pauses) - period) > TOLERANCE * period:  # which few late messages do not move
+    right = [abs(pause - period) <= tolerance for pause in pauses]
+    if not right or abs(median(pauses) - period) > TOLERANCE * period:  # a few late messages do not change the median
         return False
     mean = mean_period(messages)
-    longest = MOST * period if time == REAL else period + off
-    return sum(right) >= RIGHT[time] * len(right) and period - off <= mean <= longest
+    longest = MAX_FACTOR * period if time == REAL else period + tolerance
+    return sum(right) >= MIN_SHARE[time] * len(right) and period - tolerance <= mean <= longest
 
 
 def describe_pace(messages: Sequence[ReceivedMessage]) -> str:
-    """Say how often messages came: "every 0.20 s", or "every 0.10 s in the mean, with pauses of 0.00 s to 0.20 s"."""
+    """Describe the period: "every 0.20 s", or "every 0.10 s in the mean, with pauses of 0.00 s to 0.20 s"."""
     pauses = [after.seconds - before.seconds for before, after in pairwise(messages)]
     if not pauses:
         return "once" if messages else "not at all"

@@ -1,10 +1,10 @@
-"""What nodes that live side by side in one process publish when their callbacks are called in turn."""
+"""Calls callbacks of several nodes in turn, in one process, and returns what each call published."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from autograder.probes.calls import Plan, Step, call, calls, look, made
+from autograder.probes.calls import Plan, Step, attribute, call, calls, result_of
 from autograder.run.workspace import Workspace
 
 PUBLISH = "rclpy.publisher.Publisher.publish"
@@ -16,28 +16,29 @@ def published(
     nodes: Sequence[Step],
     turns: Sequence[tuple[int, str, Step | None]],
 ) -> list[str]:
-    """Make nodes, then call their callbacks in turn; return what each call published, as text.
+    """Create nodes, then call their callbacks in turn; return the messages that each call published, as text.
 
     Args:
-        workspace: where the module is installed.
-        module: the student's module that has the nodes' classes.
-        nodes: the calls that make the nodes. All are made before the first callback.
-        turns: the number of a node, the name of its callback, and the call that makes the message for it, or None.
+        workspace: the workspace in which the module is installed.
+        module: the student's module that defines the nodes' classes.
+        nodes: the calls that create the nodes. All are created before the first callback is called.
+        turns: for each turn, the number of a node, the name of its callback, and the call that creates the message
+            for it, or None.
 
     Returns:
-        For each turn, the `repr` of what was published; no message is in it if the callback does not exist.
+        For each turn, the `repr` of the published messages. If the callback does not exist, there are none.
     """
     plan = Plan()
     plan.add(call("init", module="rclpy"))
     publish = plan.add(call("start", on=plan.add(call("patch", PUBLISH, module="unittest.mock"))))
     numbers = [plan.add(node) for node in nodes]
-    shown = []
+    steps = []
     for number, callback, message in turns:
-        arguments = () if message is None else (made(plan.add(message)),)
+        arguments = () if message is None else (result_of(plan.add(message)),)
         plan.add(call("reset_mock", on=publish))
-        plan.add(Step(callback, arguments, on=numbers[number], begun=True))
-        sent = plan.add(look("call_args_list", on=publish))
-        shown.append(plan.add(call("repr", made(sent), module="builtins")))
+        plan.add(Step(callback, arguments, on=numbers[number], runs_coroutine=True))
+        sent = plan.add(attribute("call_args_list", on=publish))
+        steps.append(plan.add(call("repr", result_of(sent), module="builtins")))
     outcomes = calls(workspace, module, *plan.steps, network=True)
-    texts = (outcomes[step].value for step in shown)
+    texts = (outcomes[step].value for step in steps)
     return [text if isinstance(text, str) else "" for text in texts]

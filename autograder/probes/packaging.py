@@ -1,4 +1,4 @@
-"""Compares the two files that describe a package, setup.py and package.xml, and checks manifests of interfaces."""
+"""Compares setup.py with package.xml, which both describe a package, and checks the manifests of interface packages."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from autograder.submission.packages import MANIFEST
 from autograder.suite import expect
 
 GENERATORS, RUNTIME = "rosidl_default_generators", "rosidl_default_runtime"
-GROUP_OF_INTERFACES = "rosidl_interface_packages"
+INTERFACE_GROUP = "rosidl_interface_packages"
 
 
 def licence(installed: Installed) -> str:
-    """Return the licence that setup.py names."""
+    """Return the licence that setup.py declares."""
     return installed.metadata.get("License-Expression", installed.metadata.get("License", ""))
 
 
 def expect_same_facts(installed: Installed, manifest: Manifest, fraction: float = 0.0) -> None:
-    """Fail the check unless setup.py says the same of the package as package.xml does."""
+    """Fail the check unless setup.py and package.xml agree about the package."""
     expect(bool(installed.metadata), f"setup.py does not give the name {installed.package}.", fraction=fraction)
     emails = [email for _, email in manifest.maintainers]
     address = parseaddr(installed.metadata.get("Maintainer-email", ""))[1]
-    pairs = (
+    facts = (
         ("version", installed.metadata.get("Version", ""), [manifest.version]),
         ("licence", licence(installed), list(manifest.licences)),
         ("maintainer's e-mail", address, emails),
     )
-    wrong = [(what, value, allowed) for what, value, allowed in pairs if not value or value not in allowed]
-    told = "; ".join(
-        f"the {what} is {value or 'missing'} in setup.py, {', '.join(allowed)} in package.xml"
-        for what, value, allowed in wrong
+    wrong = [(label, value, allowed) for label, value, allowed in facts if not value or value not in allowed]
+    clauses = "; ".join(
+        f"the {label} is {value or 'missing'} in setup.py, {', '.join(allowed)} in package.xml"
+        for label, value, allowed in wrong
     )
-    expect(not wrong, f"The two files differ: {told}.", fraction=fraction)
+    expect(not wrong, f"The two files differ: {clauses}.", fraction=fraction)
 
 
 def expect_installs_itself(installed: Installed) -> None:
-    """Fail the check unless setup.py installs the package's marker and manifest; half the points for one."""
+    """Fail the check unless setup.py installs the package's marker and manifest. Each gives half of the points."""
     required = (INDEX / installed.package, Path("share", installed.package, MANIFEST))
     missing = [str(path) for path in required if str(path) not in installed.recorded]
     expect(
@@ -53,7 +53,7 @@ def expect_installs_itself(installed: Installed) -> None:
 
 
 def expect_pytest(workspace: Workspace, installed: Installed, fraction: float = 0.0) -> None:
-    """Fail the check unless setup.py names pytest in a way that colcon test sees."""
+    """Fail the check unless setup.py names pytest in a way that `colcon test` recognises."""
     expect(
         runs_pytest(workspace, installed),
         "`colcon test` does not run pytest for this package, because setup.py does not name pytest for its tests: "
@@ -65,19 +65,19 @@ def expect_pytest(workspace: Workspace, installed: Installed, fraction: float = 
 def wrong_for_interfaces(manifest: Manifest, uses: Mapping[str, str]) -> list[str]:
     """Return the mistakes in the manifest of an interface package, as clauses.
 
-    `uses` has the packages that its definitions use, each with the name of one that does.
+    `uses` maps each package that its definitions use to the name of such a definition.
     """
     wrong = []
     if manifest.build_type != "ament_cmake":
         wrong.append(f"the build type is {manifest.build_type or 'not given'}, it should be ament_cmake")
     for tool in ("ament_cmake", GENERATORS):
         if tool not in manifest.needs("buildtool"):
-            as_other = f", but a build tool: the tag is <buildtool_depend>{tool}</buildtool_depend>"
-            wrong.append(f"{tool} is {f'there{as_other}' if tool in manifest.needs() else 'missing'}")
+            advice = f", but a build tool: the tag is <buildtool_depend>{tool}</buildtool_depend>"
+            wrong.append(f"{tool} is {f'there{advice}' if tool in manifest.needs() else 'missing'}")
     if RUNTIME not in manifest.needs("exec"):
         wrong.append(f"there is no <exec_depend>{RUNTIME}</exec_depend>, which users of the interfaces need")
-    if GROUP_OF_INTERFACES not in manifest.groups:
-        wrong.append(f"there is no <member_of_group>{GROUP_OF_INTERFACES}</member_of_group>")
+    if INTERFACE_GROUP not in manifest.groups:
+        wrong.append(f"there is no <member_of_group>{INTERFACE_GROUP}</member_of_group>")
     for package, user in uses.items():
         if package not in manifest.needs("build") & manifest.needs("exec"):
             wrong.append(f"{package}, which {user} uses, is not declared by <depend>")

@@ -1,10 +1,10 @@
-"""A node's parameters: read and changed over its own services, and compared in sentences for the student.
+"""Reads and changes a node's parameters through its services, and describes differences in sentences for the student.
 
     node = NodeParameters(harness, "/configured_node")
     node.values("safety_distance")         # {"safety_distance": 0.5}
     node.change({"safety_distance": 9.0})  # SetParametersReply(accepted=False, reason="... out of range ...")
 
-A student can forge what a node answers. It is shown shortened, and checks believe it only where behaviour agrees.
+A student can forge a node's answers. Messages shorten them, and checks rely on them only if the behaviour agrees.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from autograder.suite import CheckFailed
 
 Value = bool | int | float | str | list[object] | None
 
-OWN = frozenset({"use_sim_time", "start_type_description_service"})  # parameters that rclpy declares on every node
-SECONDS = 5.0  # of the node's time for an answer
-SHOWN = 200  # characters of a node's own words
-ALIKE = 0.6
+RCLPY_PARAMETERS = frozenset({"use_sim_time", "start_type_description_service"})  # rclpy declares them on every node
+TIMEOUT = 5.0  # s of the node's time to wait for an answer
+MAX_QUOTE = 200  # characters of a node's answer
+MIN_RATIO = 0.6  # the smallest difflib ratio of a near miss
 MAX_FILE = 64 * 1024
-MAX_PARAMETERS = 100  # of a node
-TYPES = {
+MAX_PARAMETERS = 100  # the most parameters that a node may declare
+TYPE_NAMES = {
     ParameterType.PARAMETER_NOT_SET: "of no type yet",
     ParameterType.PARAMETER_BOOL: "a bool",
     ParameterType.PARAMETER_INTEGER: "an integer",
@@ -48,7 +48,7 @@ TYPES = {
 
 @dataclass(frozen=True)
 class SetParametersReply:
-    """A node's answer to a request to change parameters; `reason` is its words when it refused, shortened."""
+    """A node's answer to a request to change parameters; `reason` is its shortened reason for rejecting them."""
 
     accepted: bool
     reason: str = ""
@@ -56,29 +56,29 @@ class SetParametersReply:
 
 @dataclass(frozen=True)
 class NodeParameters:
-    """The parameter services of one node, by its fully qualified name."""
+    """The parameter services of the node with the fully qualified name `node`."""
 
     harness: Harness
     node: str
 
     def names(self) -> frozenset[str]:
-        """Return the names of all declared parameters, rclpy's own left out. CheckFailed: they are too many."""
+        """Return the names of all declared parameters except rclpy's. Raise a CheckFailed if there are too many."""
         response = self._ask(ListParameters, "list_parameters", ListParameters.Request())
-        names = frozenset(response.result.names) - OWN
+        names = frozenset(response.result.names) - RCLPY_PARAMETERS
         if len(names) > MAX_PARAMETERS:
             raise CheckFailed(f"The node has {len(names):,} parameters: declare at most {MAX_PARAMETERS}.")
         return names
 
     def values(self, *names: str) -> dict[str, Value]:
-        """Return values by name; an undeclared name is left out."""
-        # One request each: a node answers nothing at all when one of the names is unknown.
+        """Return the values of parameters by name, without those of undeclared names."""
+        # One request for each name, because a node returns no values if one of the names is unknown.
         answers = {
             name: self._ask(GetParameters, "get_parameters", GetParameters.Request(names=[name])) for name in names
         }
         return {name: value_of(answer.values[0], name) for name, answer in answers.items() if answer.values}
 
     def descriptors(self, *names: str) -> dict[str, ParameterDescriptor]:
-        """Return descriptors by name; an undeclared name is left out."""
+        """Return the descriptors of parameters by name, without those of undeclared names."""
         requests = {name: DescribeParameters.Request(names=[name]) for name in names}
         answers = {name: self._ask(DescribeParameters, "describe_parameters", r) for name, r in requests.items()}
         return {name: answer.descriptors[0] for name, answer in answers.items() if answer.descriptors}
@@ -92,36 +92,36 @@ class NodeParameters:
         return SetParametersReply(result.successful, shortened(result.reason))
 
     def _ask(self, kind: Any, name: str, request: Any) -> Any:
-        """Call one of the node's services. A CheckFailed says that it is missing or does not answer."""
+        """Call one of the node's services. Raise a CheckFailed if it is missing or does not answer."""
         service = f"{self.node}/{name}"
-        response = self.harness.call(kind, service, request, SECONDS)
+        response = self.harness.call(kind, service, request, TIMEOUT)
         if response is not None:
             return response
         if not self.harness.node.count_services(service):
             raise CheckFailed(f"The node has no service {service}: leave its parameter services on.")
-        raise CheckFailed(f"The node did not answer a request to {service} within {SECONDS:.0f} s.")
+        raise CheckFailed(f"The node did not answer a request to {service} within {TIMEOUT:.0f} s.")
 
 
 def shortened(text: str) -> str:
-    """Return a node's own words on one line of bounded length."""
+    """Return a text on one line of bounded length."""
     line = " ".join(text.split())
-    return line if len(line) <= SHOWN else f"{line[:SHOWN]}…"
+    return line if len(line) <= MAX_QUOTE else f"{line[:MAX_QUOTE]}…"
 
 
 def near_misses(expected: Collection[str], actual: Collection[str]) -> dict[str, str]:
-    """Return the expected names that are missing, each with the actual name that is probably meant, or ''."""
+    """Return the missing expected names, each with the actual name that is probably a misspelling of it, or ''."""
     missing = sorted(set(expected) - set(actual))
     extra = comparable(sorted(set(actual) - set(expected)))
-    likeness = {(name, other): SequenceMatcher(None, name, other).ratio() for name in missing for other in extra}
+    ratios = {(name, other): SequenceMatcher(None, name, other).ratio() for name in missing for other in extra}
     near: dict[str, str] = {}
-    for name, other in sorted(likeness, key=lambda pair: -likeness[pair]):
-        if likeness[name, other] >= ALIKE and name not in near and other not in near.values():
+    for name, other in sorted(ratios, key=lambda pair: -ratios[pair]):
+        if ratios[name, other] >= MIN_RATIO and name not in near and other not in near.values():
             near[name] = other
     return {name: near.get(name, "") for name in missing}
 
 
 def missing_sentence(expected: Collection[str], actual: Collection[str]) -> str:
-    """Say which wanted parameters a node does not declare, near misses named; '' if it declares all of them."""
+    """Name the expected parameters that a node does not declare, with near misses; '' if it declares all of them."""
     parts = [
         f"{name} (it declares {shortened(near)})" if near else name
         for name, near in near_misses(expected, actual).items()
@@ -130,7 +130,7 @@ def missing_sentence(expected: Collection[str], actual: Collection[str]) -> str:
 
 
 def same(value: Value, expected: Value) -> bool:
-    """Return whether a parameter's value is the wanted one, of the same type; doubles may differ by rounding."""
+    """Return whether a parameter has the expected value and type. Doubles may differ by rounding."""
     if type(value) is not type(expected):
         return False
     if isinstance(value, float) and isinstance(expected, float):
@@ -139,16 +139,16 @@ def same(value: Value, expected: Value) -> bool:
 
 
 def as_declared(values: Mapping[str, Value], declared: Mapping[str, Value]) -> dict[str, Value]:
-    """Return numbers in the type that a node declares, integer or double: a wrong type is one error, not many."""
+    """Convert numbers to the type that a node declares, integer or double, so that a wrong type counts only once."""
     return {name: _in_type_of(declared.get(name), value) for name, value in values.items()}
 
 
-def _in_type_of(like: Value, value: Value) -> Value:
+def _in_type_of(declared: Value, value: Value) -> Value:
     if isinstance(value, (bool, str)) or not isinstance(value, (int, float)):
         return value
-    if type(like) is float:
+    if type(declared) is float:
         return float(value)
-    return int(value) if type(like) is int and math.isfinite(value) else value
+    return int(value) if type(declared) is int and math.isfinite(value) else value
 
 
 def differences(values: Mapping[str, Value], expected: Mapping[str, Value]) -> list[str]:
@@ -161,19 +161,19 @@ def differences(values: Mapping[str, Value], expected: Mapping[str, Value]) -> l
 
 
 def value_text(value: Value) -> str:
-    """Put a value into words that tell 1 from 1.0 and from '1'."""
+    """Return a value as text in which 1, 1.0 and '1' differ."""
     return "not set" if value is None else shortened(repr(value))
 
 
 def override_arguments(values: Mapping[str, Value]) -> list[str]:
-    """Return the arguments after `--ros-args` that start a node with these values of its parameters."""
+    """Return the arguments after `--ros-args` that start a node with these parameter values."""
     return [word for name, value in values.items() for word in ("-p", f"{name}:={_in_yaml(value)}")]
 
 
 def read_file(path: Path) -> dict[str, dict[str, Value]]:
-    """Read a parameter file: values by parameter, by the node or wildcard that they are for, in the file's order.
+    """Read a parameter file: for each node or wildcard, in the file's order, values by parameter.
 
-    A CheckFailed says what to do if it is missing, unfinished, not YAML, or not nested as ROS requires.
+    A CheckFailed says what to do if the file is missing, unfinished, not YAML, or not nested as ROS requires.
     """
     if path.is_symlink() or not path.is_file():
         raise CheckFailed(
@@ -190,7 +190,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
     with reading(path.name):
         try:
             file = student_yaml.load(text)
-        except (yaml.YAMLError, ValueError, RecursionError) as error:  # a ValueError: it reads 2026-13-01 as a date
+        except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: PyYAML takes 2026-13-01 for a date
             raise CheckFailed(f"{path.name} is not YAML: {shortened(reason(error))}.") from None
         if not isinstance(file, dict):
             raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
@@ -198,7 +198,7 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
 
 
 def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Value]:
-    """Return the values that `read_file` found for a node, by wildcards or by its name without a namespace."""
+    """Return the values from `read_file` that apply to a node, under a wildcard or its name without a namespace."""
     keys = ("/**", f"/**/{name}", name, f"/{name}")
     return {parameter: value for key in keys for parameter, value in file.get(key, {}).items()}
 
@@ -209,21 +209,21 @@ def _values(file: str, node: str, below: object) -> dict[str, Value]:
     if not isinstance(below, dict) or not below:
         raise CheckFailed(f"In {file}, nothing is below {node}: indent ros__parameters under it.")
     if set(below) != {"ros__parameters"}:
-        near = _listed(name for name in below if name != "ros__parameters")
-        raise CheckFailed(f"In {file}, {near} is directly below {node}: ROS reads what is below ros__parameters.")
+        others = _join_names(name for name in below if name != "ros__parameters")
+        raise CheckFailed(f"In {file}, {others} is directly below {node}: ROS reads what is below ros__parameters.")
     values = below["ros__parameters"]
     if not isinstance(values, dict) or not values:
         raise CheckFailed(f"In {file}, {node} has no values: indent them under its ros__parameters.")
     for name, value in values.items():
-        if beyond := beyond_bounds(value):
-            raise CheckFailed(f"In {file}, {shortened(str(name))} is a {beyond}, which ROS cannot hold.")
+        if excess := beyond_bounds(value):
+            raise CheckFailed(f"In {file}, {shortened(str(name))} is a {excess}, which ROS cannot hold.")
     return {str(name): value for name, value in values.items()}
 
 
-def _listed(names: Iterable[object]) -> str:
+def _join_names(names: Iterable[object]) -> str:
     return ", ".join(shortened(str(name)) for name in names)
 
 
 def _in_yaml(value: Value) -> str:
-    """Return a value as YAML has it, in one line: `.nan` for nan."""
+    """Return a value as YAML in one line, such as `.nan` for nan."""
     return str(yaml.safe_dump(value, width=math.inf)).partition("\n")[0]

@@ -1,4 +1,4 @@
-"""Runs a program of a student's package by itself, without a harness."""
+"""Runs a program of a student's package without a harness."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from autograder.run.workspace import Workspace
 
 @dataclass(frozen=True)
 class ProgramRun:
-    """The exit status of a program, negative for a signal and None if it still ran, and all that it printed."""
+    """The exit status and the output of a program."""
 
-    status: int | None
+    status: int | None  # negative for a signal; None if the program had to be stopped
     output: str
 
 
 def run_program(
     workspace: Workspace, package: str, executable: str, arguments: tuple[str, ...], seconds: float
 ) -> ProgramRun:
-    """Run an installed program in its sandbox for at most `seconds` of real time, then end it.
+    """Run an installed program in its sandbox for at most `seconds` of real time, then stop it.
 
     Raises:
-        StudentError: the package does not install it.
+        StudentError: the package does not install the program.
     """
     command = [sys.executable, str(workspace.executable(package, executable)), *arguments]
     with launch(command, workspace.sandbox()) as process:

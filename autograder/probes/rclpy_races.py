@@ -1,28 +1,27 @@
-"""Errors that rclpy raises at times when a signal ends a program, whatever that program does."""
+"""Recognises errors that rclpy sometimes raises when a signal ends a program, even a correct one."""
 
 from __future__ import annotations
 
 import signal
 
-_CRASHES = (signal.SIGSEGV, signal.SIGABRT)  # of the C++ code below rclpy
-_SHELL = 128  # a shell and bubblewrap add it to the number of a signal
+_CRASH_SIGNALS = (signal.SIGSEGV, signal.SIGABRT)  # signals of a crash in the C++ code below rclpy
+_SHELL_OFFSET = 128  # a shell and bubblewrap add it to the number of a signal
 
 
 def crashed(status: int | None) -> bool:
-    """Return whether an exit status is a crash of native code, which no line of Python raises by itself.
+    """Return whether an exit status comes from a crash of native code, which Python code alone cannot cause.
 
-    A node whose thread still spins while the main thread shuts the context down ends so at times on a busy machine.
+    On a busy machine, a node sometimes crashes if a thread still spins while the main thread shuts the context down.
     """
-    return status is not None and any(status in (-number, _SHELL + number) for number in _CRASHES)
+    return status is not None and any(status in (-number, _SHELL_OFFSET + number) for number in _CRASH_SIGNALS)
 
 
 def lost_a_race(output: str) -> bool:
     """Return whether a program's output ends with the traceback of an error that rclpy raises by chance.
 
-    Each is a race of a few microseconds with rclpy's signal thread, which shuts the context down: an executor has found
-    the context valid and builds its wait set, or `Context.try_shutdown` has found it valid and shuts it down itself. On
-    a busy machine, the latter happens in one of 500 ends of a right program. A program that calls `rclpy.shutdown` is
-    not such a case: it raises each time.
+    Each error results from a race of a few microseconds with rclpy's signal thread, which shuts the context down after
+    other code has found it valid: an executor that builds its wait set, or `Context.try_shutdown`. On a busy machine,
+    the latter loses in one of 500 cases. Calling `rclpy.shutdown` after the signal is not a race: it fails every time.
     """
     lines = output.splitlines()
     frames = [line for line in lines if line.startswith("  File ")]

@@ -1,8 +1,8 @@
 """Receives the announcements of participants in a DDS domain, without being a participant.
 
-A new participant announces itself at once to the multicast port of its domain or, if it is to stay on this machine, to
-the first unicast ports. The announcement stays in the sniffer's socket, however busy the machine is and however soon
-the participant leaves. A second participant would not do: one discovery in seven takes up to 3 s.
+A new participant announces itself at once to the multicast port of its domain or, if it is restricted to this machine,
+to the first unicast ports. The announcement remains in the sniffer's socket, even on a busy machine and after the
+participant has left. A second participant is too slow for this: one discovery in seven takes up to 3 s.
 
 Source of ports and address: DDS Interoperability Wire Protocol (RTPS) 2.5, section 9.6.2.3.
 """
@@ -15,14 +15,14 @@ import struct
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import DoubtfulError
 
-# No program would choose these, and their ports are above those that the system gives away.
+# Programs rarely choose these domains, whose ports are above those that the system assigns.
 DOMAINS = range(215, 232)
 GROUP = "239.255.0.1"
 _MAGIC = b"RTPS"
 
 
 class RtpsSniffer:
-    """Listens in a domain that has no participant; `domain` is its `ROS_DOMAIN_ID`."""
+    """Receives the announcements in a domain that had no participant; `domain` is its `ROS_DOMAIN_ID`."""
 
     def __init__(self) -> None:
         """Find a free domain; raise a DoubtfulError if each of `DOMAINS` has participants."""
@@ -30,46 +30,46 @@ class RtpsSniffer:
             base = 7400 + 250 * domain
             first = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
             try:
-                first.bind(("", base + 10))  # the port of the first participant, which has it for itself
+                first.bind(("", base + 10))  # the port of the first participant, which does not share it
             except OSError:
                 first.close()
                 continue
             self.domain = domain
-            self._sockets = (first, _member(base))
+            self._sockets = (first, _join_group(base))
             return
         sentence = f"Programs are in all DDS domains from {DOMAINS[0]} to {DOMAINS[-1]}: end those that you start."
         raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))
 
     def take_announcements(self) -> bool:
         """Return whether a participant has announced itself in the domain since the last call."""
-        return sum(_take(each) for each in self._sockets) > 0
+        return sum(_count_announcements(sock) for sock in self._sockets) > 0
 
     def __enter__(self) -> RtpsSniffer:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for each in self._sockets:
-            each.close()
+        for sock in self._sockets:
+            sock.close()
 
 
-def _member(port: int) -> socket.socket:
+def _join_group(port: int) -> socket.socket:
     """Return a socket that receives messages to the multicast group on this machine."""
-    made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # participants bind the port, too
-    made.bind((GROUP, port))
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # participants also bind this port
+    sock.bind((GROUP, port))
     for index, _ in socket.if_nameindex():
         request = struct.pack("4s4si", socket.inet_aton(GROUP), bytes(4), index)
         try:
-            made.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, request)
+            sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, request)
         except OSError:
-            continue  # an interface that is down, or knows no multicast
-    return made
+            continue  # an interface that is down, or has no multicast
+    return sock
 
 
-def _take(each: socket.socket) -> int:
+def _count_announcements(sock: socket.socket) -> int:
     count = 0
     while True:
         try:
-            count += each.recv(len(_MAGIC), socket.MSG_DONTWAIT) == _MAGIC
+            count += sock.recv(len(_MAGIC), socket.MSG_DONTWAIT) == _MAGIC
         except BlockingIOError:
             return count

@@ -1,8 +1,8 @@
 """Records of runs of a student's tests: the package, the requested run, and its report in JUnit XML.
 
-A run that could read a hidden version can put its text into any part of the report: ids of parametrized tests, names of
-generated ones, exceptions, output. So its report is closed (`Report.closed`): of its text, only names from the
-student's source remain.
+A run that can read a hidden version can put the version's text into any part of the report: ids of parametrized tests,
+names of generated ones, exceptions, output. So such a report is closed (`Report.closed`): only names from the student's
+source remain.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from autograder.probes.versions import Version
 from autograder.run.sandbox import ExitReason
 
 MAX_BYTES = 1024 * 1024
-MAX_MESSAGE = 300
+MAX_MESSAGE = 300  # characters
 MAX_SOURCE = 256 * 1024  # bytes of a test file from which names are read
-MAX_SOURCES = 1024 * 1024  # bytes of all of them
-MAX_NAME = 300  # characters of such a name, with those of the classes that the test is in
+MAX_SOURCES = 1024 * 1024  # bytes of all test files from which names are read
+MAX_NAME = 300  # characters of a test's name, including the classes around it
 UNNAMED = "a test"  # the name for a test whose own name does not occur in the student's source
-_KEY = secrets.token_bytes(16)
+_KEY = secrets.token_bytes(16)  # the key for the digests of parameters' ids
 
 
 class ClaimedOutcome(str, Enum):
@@ -43,7 +43,7 @@ class ClaimedOutcome(str, Enum):
 class Claims:
     """The outcomes of all tests, as the run reports them."""
 
-    # By test, `module::name` or `module::Class::name`, in the order in which they ran.
+    # The outcomes by test, `module::name` or `module::Class::name`, in the order of execution.
     verdicts: Mapping[str, ClaimedOutcome] = field(default_factory=dict)
     messages: Mapping[str, str] = field(default_factory=dict)  # the first line of each failure, by test
 
@@ -52,29 +52,32 @@ class Claims:
 class TestRun:
     """One run of a student's tests."""
 
-    files: tuple[str, ...]  # test files, by their paths below the package's folder `test`
+    files: tuple[str, ...]  # paths of test files, below the package's folder `test`
     version: Version | None = None  # the package under test; None for the student's own, as it was built
     backwards: bool = False  # whether the tests run in the opposite order
-    first_failure: bool = False  # whether the run ends with the first test that fails
-    sniffed: bool = False  # whether an `RtpsSniffer` listens in the default domain
-    conftest: bool = True  # whether pytest reads the conftest.py that is there
-    without: tuple[str, ...] = ()  # tests that do not run, called as in `Claims`
-    shown: bool = False  # whether the student may read the output about `version`: only if the version is not secret
-    __test__: ClassVar[bool] = False  # pytest would take it for a class of tests
+    exit_first: bool = False  # whether the run ends with the first test that fails
+    sniffed: bool = False  # whether an `RtpsSniffer` receives announcements in the default domain
+    conftest: bool = True  # whether pytest reads a conftest.py
+    deselected: tuple[str, ...] = ()  # tests that do not run, named as in `Claims`
+    is_public: bool = False  # whether the student may read the output about `version`, because it is not secret
+    __test__: ClassVar[bool] = False  # otherwise pytest takes this for a class of tests
 
 
 @dataclass(frozen=True)
 class Report:
-    """The report of a run; all but `exit_reason`, `left`, `is_logging` and `joined_domain` is the run's own claim."""
+    """The report of a run.
 
-    exit_reason: ExitReason | None  # how its process ended; None when the grader ended it after pytest was done
-    status: int | None  # pytest's exit status, None when it never came to that
-    claims: Claims  # the reported outcomes of its tests
-    left: int  # UDP sockets that were still open after the last test: each ROS context that still exists holds some
-    output: str  # its output
-    is_logging: bool = False  # whether a log file was still open then: rclpy closes its own when no context is left
-    joined_domain: bool = False  # whether a program joined the default domain, where the run was sniffed
-    known: frozenset[str] | None = None  # of a closed report: the tests in the student's source, `module::name`
+    The run itself claims everything except `exit_reason`, `open_sockets`, `is_logging` and `joined_domain`.
+    """
+
+    exit_reason: ExitReason | None  # how the process ended; None if the grader ended it after pytest
+    status: int | None  # pytest's exit status, or None if pytest did not reach its end
+    claims: Claims  # the reported outcomes of the tests
+    open_sockets: int  # UDP sockets open after the last test; each ROS context that still exists has some
+    output: str
+    is_logging: bool = False  # whether a log file was still open then; rclpy closes its own with the last context
+    joined_domain: bool = False  # whether a program joined the default domain, if the run was sniffed
+    source_tests: frozenset[str] | None = None  # in a closed report: the tests in the student's source, `module::name`
 
     @property
     def timed_out(self) -> bool:
@@ -83,7 +86,7 @@ class Report:
 
     @property
     def passed(self) -> bool:
-        """Whether tests ran and each one passed."""
+        """Whether at least one test ran and all passed."""
         return self.status == 0 and bool(self.executed) and not self.failed
 
     @property
@@ -93,79 +96,79 @@ class Report:
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """The tests that failed, in themselves or in a fixture."""
+        """The tests that failed or had an error in a fixture."""
         bad = (ClaimedOutcome.FAILED, ClaimedOutcome.ERROR)
         return tuple(name for name, verdict in self.claims.verdicts.items() if verdict in bad)
 
     def detects_fault(self, right: Report) -> bool:
-        """Whether a test fails here that passed on a right version. A file that cannot be read does not count."""
-        if self.known is not None and right.known is None:
-            right = right.closed(self.known)
+        """Return whether a test that passed on a right version failed here. An unreadable file does not count."""
+        if self.source_tests is not None and right.source_tests is None:
+            right = right.closed(self.source_tests)
         return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
 
     def failed_in(self, other: Report) -> tuple[str, ...]:
-        """Return the tests of this report, which is not closed, that fail in another one, which may be."""
+        """Return the tests of this report that fail in another one. Only the other one may be closed."""
         bad = set(other.failed)
-        if other.known is None:
+        if other.source_tests is None:
             return tuple(name for name in self.claims.verdicts if name in bad)
-        return tuple(name for name in self.claims.verdicts if _closed(name, other.known) in bad)
+        return tuple(name for name in self.claims.verdicts if _closed_name(name, other.source_tests) in bad)
 
-    def closed(self, known: frozenset[str]) -> Report:
-        """Return the report without any text of the run, for a run that could read a hidden version.
+    def closed(self, source_tests: frozenset[str]) -> Report:
+        """Return the report without any text of the run, for a run that can read a hidden version.
 
-        It has no output and no messages. A test is called by its name in the student's source, or `UNNAMED`. A
-        parameter's id becomes a digest, which serves only to compare runs in this process.
+        It has no output and no messages. A test is named as in the student's source, or `UNNAMED`. The id of a
+        parameter is replaced by a digest, which is used only to compare runs in this process.
         """
-        verdicts = {_closed(name, known): verdict for name, verdict in self.claims.verdicts.items()}
-        return replace(self, claims=Claims(verdicts), output="", known=known)
+        verdicts = {_closed_name(name, source_tests): verdict for name, verdict in self.claims.verdicts.items()}
+        return replace(self, claims=Claims(verdicts), output="", source_tests=source_tests)
 
 
 def shown_name(test: str) -> str:
-    """Return the name of a test in sentences, `module::name[parameters]`, or without parameters for a closed report."""
+    """Return a test's name for a sentence, without its module, and in a closed report without its parameters."""
     return test.partition("[#")[0].partition("::")[2] or UNNAMED
 
 
-def _closed(name: str, known: frozenset[str]) -> str:
-    if name in known:
+def _closed_name(name: str, source_tests: frozenset[str]) -> str:
+    if name in source_tests:
         return name
     base, digest = name.partition("[")[0], hmac.digest(_KEY, name.encode(errors="replace"), "sha256").hex()[:16]
-    return f"{base if base in known else UNNAMED}[#{digest}]"
+    return f"{base if base in source_tests else UNNAMED}[#{digest}]"
 
 
 @dataclass(frozen=True)
 class Source:
-    """A student's package as plain files, by path below its folder; its tests are those below `test`."""
+    """A student's package as plain files, by their paths below its folder."""
 
     package: str
     files: Mapping[str, bytes]
 
     @property
     def tests(self) -> dict[str, bytes]:
-        """The files below `test`, by their paths there."""
+        """The files below `test`, by their paths relative to it."""
         return {name.removeprefix("test/"): data for name, data in self.files.items() if name.startswith("test/")}
 
     def test_names(self, files: tuple[str, ...]) -> frozenset[str]:
         """Return the tests in test files, named as in a report. The files are parsed, not run.
 
-        Very long names, and files that are too large or too many, are left out: their tests are `UNNAMED`.
+        Tests with very long names, or in files that exceed the limits, are left out and become `UNNAMED`.
         """
         names: set[str] = set()
-        tests, left = self.tests, MAX_SOURCES
+        tests, remaining = self.tests, MAX_SOURCES
         for name in files:
             data = tests.get(name, b"")
-            if len(data) > min(MAX_SOURCE, left):
+            if len(data) > min(MAX_SOURCE, remaining):
                 continue
-            left -= len(data)
+            remaining -= len(data)
             tree = parse_python(data)
             for node in tree.body if tree else ():
                 names.update(_tests(node, PurePosixPath(name).stem))
         return frozenset(names)
 
 
-def _tests(node: ast.stmt, place: str) -> Iterator[str]:
+def _tests(node: ast.stmt, prefix: str) -> Iterator[str]:
     if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         return
-    name = f"{place}::{node.name}"
+    name = f"{prefix}::{node.name}"
     if len(name) > MAX_NAME:
         return
     if isinstance(node, ast.ClassDef):
@@ -176,8 +179,8 @@ def _tests(node: ast.stmt, place: str) -> Iterator[str]:
 
 
 def parse_claims(data: bytes) -> Claims | None:
-    """Parse JUnit XML; None when it is too large, declares entities, or is not JUnit XML."""
-    if len(data) > MAX_BYTES or b"<!" in data.replace(b"\0", b"").replace(b"<![CDATA[", b""):  # also in UTF-16
+    """Parse JUnit XML; return None if it is too large, declares entities, or is not JUnit XML."""
+    if len(data) > MAX_BYTES or b"<!" in data.replace(b"\0", b"").replace(b"<![CDATA[", b""):  # UTF-16 has null bytes
         return None
     try:
         root = ET.fromstring(data)
@@ -186,17 +189,17 @@ def parse_claims(data: bytes) -> Claims | None:
     verdicts: dict[str, ClaimedOutcome] = {}
     messages: dict[str, str] = {}
     for case in root.iter("testcase"):
-        name = "::".join([*_place(case.get("classname", "")), case.get("name", "")])
+        name = "::".join([*_module_and_classes(case.get("classname", "")), case.get("name", "")])
         verdict, message = _verdict(case)
-        # A test whose clean-up fails is listed a second time: the failure counts.
+        # A test whose clean-up fails is listed a second time, and the failure counts.
         if verdicts.get(name, ClaimedOutcome.PASSED) is ClaimedOutcome.PASSED:
             verdicts[name] = verdict
             messages[name] = message
     return Claims(verdicts, messages)
 
 
-def _place(classname: str) -> list[str]:
-    """Return the test module in a dotted name, and the classes after it."""
+def _module_and_classes(classname: str) -> list[str]:
+    """Return the parts of a dotted name from the test module on: the module and the classes."""
     parts = classname.split(".")
     modules = [index for index, part in enumerate(parts) if part.startswith("test_")]
     return parts[modules[-1] :] if modules else parts[-1:]

@@ -1,15 +1,15 @@
 """Runs a student's tests against versions of the package under test, and reports the results of each version.
 
-    source = take(workspace, "wheels")
+    source = read_source(workspace, "wheels")
     reports = run(workspace, source, [TestRun(("test_limits.py",), right), TestRun(("test_limits.py",), faulty)])
 
 The student's tests control a run: it claims "passes" or "fails", and earns points if the claim is right for each
-version. So a run must not be able to recognise its version. Every run gets its own sandbox with only its own loopback,
-a random path, the same times and environment, and no writable folder except a temporary /tmp. It sees its version, but
-not the others, the suites or earlier runs. `versions` explains how versions are made indistinguishable, and the
-remaining differences. The report on a version that students do not have comes back without its text (`Report.closed`).
-Only a sniffed run shares the grader's loopback, which no other program uses. The run can notice that, so it has to get
-a right version.
+version. So a run must not be able to recognise its version. Every run has a sandbox with a separate loopback, a random
+path, the same times and environment, and no writable folder except a temporary /tmp. It can read its version, but not
+the others, the suites or earlier runs. `versions` explains how versions are made indistinguishable, and the remaining
+differences. The report on a version that students do not have is returned without its text (`Report.closed`). Only a
+sniffed run shares the grader's loopback, which no other program uses. The run can detect that, so its version has to be
+correct.
 """
 
 from __future__ import annotations
@@ -40,18 +40,19 @@ from autograder.run.sandbox.launcher import current_isolation, launch
 from autograder.run.sandbox.limits import TEST_RUN
 from autograder.run.workspace import Workspace
 from autograder.submission.intake import read_packages
-from autograder.submission.reading import hold, reading
+from autograder.submission.reading import reading, record_data
 
 RUNNER = Path(__file__).with_name("pytest_runner.py")
 STANDINS = Path(autograder.ros.__file__).parent / "standins"
-JOBS = 5  # runs at a time: most of a run is waiting, for processes to start and for time to pass
-HOME = Path("/tmp")  # the sandbox's own
+JOBS = 5  # runs at a time; a run mostly waits for processes to start and for time to pass
+HOME = Path("/tmp")  # the home folder in the sandbox
 
 
-def take(workspace: Workspace, package: str) -> Source:
-    """Read a package's source, which the student's code could write to while it was built.
+def read_source(workspace: Workspace, package: str) -> Source:
+    """Read a package's source, to which the student's code could write during the build.
 
-    A StudentError says that it contains something except plain files, or no folder with the package's name.
+    Raises:
+        StudentError: the source does not consist of plain files, or no folder has the package's name.
     """
     entries = read_packages(workspace.root)
     folder = next(
@@ -60,46 +61,46 @@ def take(workspace: Workspace, package: str) -> Source:
     if folder is None:
         sentence = f"There is no folder src/{package} with a package.xml: a package's folder has its name."
         raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
-    inside = [entry for entry in entries if entry.path.is_relative_to(folder)]
-    return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in inside})
+    package_entries = [entry for entry in entries if entry.path.is_relative_to(folder)]
+    return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in package_entries})
 
 
-def run(workspace: Workspace, source: Source, wanted_runs: Sequence[TestRun]) -> list[Report]:
-    """Run a package's tests in a built workspace; return a report for each wanted run, in the given order.
+def run(workspace: Workspace, source: Source, test_runs: Sequence[TestRun]) -> list[Report]:
+    """Run a package's tests in a built workspace; return a report for each run, in the given order.
 
-    A run that had to be stopped is made again if it is the only stopped one of its files, and the second run counts.
-    rclpy can miss the end of an executor that spins in a thread: `Executor.shutdown` destroys the guard condition with
+    If only one run of some files had to be stopped, it is repeated, and the second run counts. The reason may be an
+    executor that spins in a thread and misses its end, because `Executor.shutdown` destroys the guard condition with
     which it has just woken the executor.
 
     Raises:
         StudentError: the disk is full.
-        GraderError: no domain is free to listen in.
+        GraderError: all domains for sniffed runs are in use.
     """
-    hold("What your tests reported")
+    record_data("What your tests reported")
     with ThreadPoolExecutor(JOBS) as pool:
-        once = partial(_run, workspace, source)
-        reports = list(pool.map(once, wanted_runs))
-        stopped = [place for place, report in enumerate(reports) if report.timed_out]
-        files = Counter(wanted_runs[place].files for place in stopped)
-        again = [place for place in stopped if files[wanted_runs[place].files] == 1]
-        for place, report in zip(again, pool.map(once, [wanted_runs[place] for place in again]), strict=True):
-            reports[place] = report
+        run_once = partial(_run, workspace, source)
+        reports = list(pool.map(run_once, test_runs))
+        stopped_indices = [index for index, report in enumerate(reports) if report.timed_out]
+        files = Counter(test_runs[index].files for index in stopped_indices)
+        retries = [index for index in stopped_indices if files[test_runs[index].files] == 1]
+        for index, report in zip(retries, pool.map(run_once, [test_runs[i] for i in retries]), strict=True):
+            reports[index] = report
     return reports
 
 
 def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, network: bool = False) -> Sandbox:
-    """Return the sandbox of a run: that of the workspace, and the files that pytest needs.
+    """Return the sandbox of a run: that of the workspace, with the files that pytest needs.
 
     Args:
         workspace: the built workspace.
-        readable: more files and folders that the run may read.
+        readable: additional files and folders that the run may read.
         limits: the resource limits of the run.
-        network: whether it shares the grader's loopback.
+        network: whether the run shares the grader's loopback.
     """
     mounts = (*workspace.sandbox().mounts, Mount(STANDINS), *map(Mount, readable))
-    plain = workspace.sandbox(limits)
-    environment = {**plain.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-    return replace(plain, mounts=mounts, environment=environment, network=network)
+    spec = workspace.sandbox(limits)
+    environment = {**spec.environment, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    return replace(spec, mounts=mounts, environment=environment, network=network)
 
 
 def _run(workspace: Workspace, source: Source, test_run: TestRun) -> Report:
@@ -107,7 +108,7 @@ def _run(workspace: Workspace, source: Source, test_run: TestRun) -> Report:
         with TemporaryDirectory(prefix="tests-", dir=workspace.root.parent, ignore_cleanup_errors=True) as place:
             if current_isolation() is Isolation.BUBBLEWRAP:
                 return _run_in(Path(place), workspace, source, test_run)
-            with Domain() as domain:  # its runs are in one network
+            with Domain() as domain:  # at this isolation level, all runs share one network
                 return _run_in(Path(place), replace(workspace, domain=domain.number), source, test_run)
     except OSError as error:
         if error.errno not in (errno.ENOSPC, errno.EDQUOT):
@@ -119,28 +120,28 @@ def _run(workspace: Workspace, source: Source, test_run: TestRun) -> Report:
 
 def _run_in(place: Path, workspace: Workspace, source: Source, test_run: TestRun) -> Report:
     if test_run.version is not None:
-        there = replace(workspace, root=place / "ws")
-        folder = write_version(test_run.version, source.package, source.tests, there.root)
+        tested = replace(workspace, root=place / "ws")
+        folder = write_version(test_run.version, source.package, source.tests, tested.root)
     else:
-        there, folder = workspace, place / "ws" / "src" / source.package
+        tested, folder = workspace, place / "ws" / "src" / source.package
         for name, data in source.files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
     launches = _launches(source, test_run)
     arguments = _arguments(source, folder, test_run, launches)
     if not test_run.sniffed:
-        report = _start_pytest(_confined(there, folder, test_run, place / "home"), test_run, arguments, launches)
+        report = _start_pytest(_sandbox_of(tested, folder, test_run, place / "home"), test_run, arguments, launches)
     else:
         with RtpsSniffer() as sniffer:
-            spec = _confined(replace(there, domain=sniffer.domain), folder, test_run, place / "home")
+            spec = _sandbox_of(replace(tested, domain=sniffer.domain), folder, test_run, place / "home")
             report = _start_pytest(spec, test_run, arguments, launches)
             report = replace(report, joined_domain=sniffer.take_announcements())
-    is_secret = test_run.version is not None and not test_run.shown
+    is_secret = test_run.version is not None and not test_run.is_public
     return report.closed(source.test_names(test_run.files)) if is_secret else report
 
 
-def _confined(workspace: Workspace, folder: Path, test_run: TestRun, home: Path) -> Sandbox:
-    """Describe the sandbox of one run. Its only writable folder is its own /tmp, if it has one."""
+def _sandbox_of(workspace: Workspace, folder: Path, test_run: TestRun, home: Path) -> Sandbox:
+    """Return the sandbox of one run. With bubblewrap, the only writable folder is the sandbox's own /tmp."""
     if current_isolation() is Isolation.BUBBLEWRAP:
         spec = sandboxed(replace(workspace, scratch=HOME), folder, RUNNER, network=test_run.sniffed)
         return replace(spec, workdir=folder, mounts=tuple(mount for mount in spec.mounts if mount.path != HOME))
@@ -150,55 +151,55 @@ def _confined(workspace: Workspace, folder: Path, test_run: TestRun, home: Path)
 
 def _arguments(source: Source, folder: Path, test_run: TestRun, launches: bool) -> list[str]:
     files = [str(folder / "test" / name) for name in test_run.files]
-    plain = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
-    plain += [word for plugin in _launch_plugins() for word in ("-p", plugin)] if launches else []
-    quiet = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
-    asked = [*(["-x"] if test_run.first_failure else []), *([] if test_run.conftest else ["--noconftest"])]
-    asked += [
-        f"--deselect=test/{module}.py::{rest}" for module, _, rest in (n.partition("::") for n in test_run.without)
-    ]
-    return [*plain, *quiet, *asked, *files]
+    config = ["-c", "/dev/null", "--rootdir", str(folder), "--confcutdir", str(folder)]
+    config += [word for plugin in _launch_plugins() for word in ("-p", plugin)] if launches else []
+    output = ["-p", "no:cacheprovider", "-q", "--tb=short", "-o", "junit_family=xunit2"]
+    selection = [*(["-x"] if test_run.exit_first else []), *([] if test_run.conftest else ["--noconftest"])]
+    for test in test_run.deselected:
+        module, _, name = test.partition("::")
+        selection.append(f"--deselect=test/{module}.py::{name}")
+    return [*config, *output, *selection, *files]
 
 
 def _launch_plugins() -> tuple[str, str]:
-    """Return the plugins of both styles: a fixture of launch_pytest, a description that is marked `launch_test`."""
+    """Return the plugins for both styles of launch tests, launch_pytest and launch_testing."""
     spec = find_spec("launch_testing")
     is_real = spec is not None and spec.origin is not None and not Path(spec.origin).is_relative_to(STANDINS)
     return "launch_pytest.plugin", "launch_testing.pytest.hooks" if is_real else "launch_testing.plugin"
 
 
 def _launches(source: Source, test_run: TestRun) -> bool:
-    """Return whether tests may launch programs, which takes further imports."""
-    read = [*test_run.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
-    return any(b"launch" in source.tests.get(name, b"") for name in read)
+    """Return whether tests may launch programs, which requires further imports."""
+    names = [*test_run.files, *(name for name in source.tests if not Path(name).name.startswith("test_"))]
+    return any(b"launch" in source.tests.get(name, b"") for name in names)
 
 
 def _start_pytest(spec: Sandbox, test_run: TestRun, arguments: list[str], launches: bool) -> Report:
     status_read, status_write = os.pipe()
     go_read, go_write = os.pipe()
     with os.fdopen(os.memfd_create("report"), "w+b") as report:
-        theirs = (report.fileno(), status_write, go_read)
-        command = [sys.executable, str(RUNNER), *map(str, theirs), str(int(test_run.backwards)), *arguments]
+        descriptors = (report.fileno(), status_write, go_read)
+        command = [sys.executable, str(RUNNER), *map(str, descriptors), str(int(test_run.backwards)), *arguments]
         try:
-            process = launch(command, spec, pass_fds=theirs, profile="launch" if launches else "tests")
+            process = launch(command, spec, pass_fds=descriptors, profile="launch" if launches else "tests")
         finally:
             os.close(status_write)
             os.close(go_read)
         with process:
             status = _status(status_read, process)
-            left, is_logging = leftovers(process.innermost()) if status is not None else (0, False)
+            open_sockets, is_logging = leftovers(process.innermost()) if status is not None else (0, False)
             os.close(go_write)
             process.wait(spec.limits.wall_seconds)
             exit_reason = process.exit_reason
         report.seek(0)
         claims = None if status is None else parse_claims(report.read(MAX_BYTES + 1))
     if claims is None:
-        return Report(exit_reason, None, Claims(), left, process.output, is_logging)
-    return Report(exit_reason, status, claims, left, process.output, is_logging)
+        return Report(exit_reason, None, Claims(), open_sockets, process.output, is_logging)
+    return Report(exit_reason, status, claims, open_sockets, process.output, is_logging)
 
 
 def _status(descriptor: int, process: Process) -> int | None:
-    """Return pytest's exit status once the run says that its report is there; None if it ends without."""
+    """Wait for pytest's exit status, which the run sends after its report; return None if the run ends without it."""
     try:
         while not select.select([descriptor], [], [], 0.1)[0]:
             if process.exit_reason is not None:
@@ -210,7 +211,7 @@ def _status(descriptor: int, process: Process) -> int | None:
 
 
 def leftovers(pid: int) -> tuple[int, bool]:
-    """Count the UDP sockets that a process holds, and look whether a log file is open."""
+    """Return the number of a process's open UDP sockets, and whether it has a log file open."""
     folder = Path("/proc") / str(pid)
     try:
         targets = [str(link.readlink()) for link in (folder / "fd").iterdir()]

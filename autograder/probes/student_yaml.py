@@ -1,4 +1,4 @@
-"""Reads untrusted YAML: aliases and merges may expand to a bounded number of values only."""
+"""Reads untrusted YAML. The number of values to which aliases and merges expand is limited."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ def load(text: str | bytes) -> Any:
     """Parse a YAML document into plain data.
 
     Raises:
-        yaml.YAMLError: it is not YAML, it contains itself, or it expands to more than `MAX_VALUES`. PyYAML raises other
-            exceptions, too, for tags and numbers that it cannot read.
+        yaml.YAMLError: the text is not YAML, or a value contains itself or expands to more than `MAX_VALUES` values.
+            PyYAML also raises other exceptions for tags and numbers that it cannot read.
     """
     loader = yaml.SafeLoader(text)
     try:
@@ -27,16 +27,16 @@ def load(text: str | bytes) -> Any:
         loader.dispose()
 
 
-def _size(node: yaml.Node, known: dict[int, int]) -> int:
-    """Return the number of values in a node. `known` has those of other nodes, 0 for a node that is being counted."""
-    size = known.get(id(node))
+def _size(node: yaml.Node, sizes: dict[int, int]) -> int:
+    """Return the number of values in a node. `sizes` maps other nodes to theirs, and nodes being counted to 0."""
+    size = sizes.get(id(node))
     if size == 0:
         raise yaml.YAMLError("an alias is inside the value that it repeats")
     if size is None:
-        known[id(node)] = 0
-        inside = node.value if isinstance(node, yaml.CollectionNode) else ()
-        parts = [part for item in inside for part in (item if isinstance(item, tuple) else (item,))]
-        size = known[id(node)] = 1 + sum(_size(part, known) for part in parts)
+        sizes[id(node)] = 0
+        items = node.value if isinstance(node, yaml.CollectionNode) else ()
+        children = [child for item in items for child in (item if isinstance(item, tuple) else (item,))]
+        size = sizes[id(node)] = 1 + sum(_size(child, sizes) for child in children)
     if size > MAX_VALUES:
         raise yaml.YAMLError(f"its aliases expand to more than {MAX_VALUES} values")
     return size

@@ -14,7 +14,7 @@ import yaml
 from autograder import course_paths
 from autograder.exceptions import UsageError
 
-SHOWN = "shown.yaml"
+INDEX_FILE = "shown.yaml"
 
 
 @dataclass(frozen=True)
@@ -34,10 +34,10 @@ def other_answers(assignment: str) -> tuple[OtherAnswer, ...]:
     """Return the other answers to an assignment, in the order of `shown.yaml`.
 
     Raises:
-        UsageError: there are none, or `shown.yaml` names a variant that does not exist.
+        UsageError: `shown.yaml` does not exist or is invalid, or it names a variant that does not exist.
     """
     folder = course_paths.CHECKS / f"ch{assignment}" / "variants"
-    path = folder / SHOWN
+    path = folder / INDEX_FILE
     try:
         texts = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError:
@@ -50,17 +50,17 @@ def other_answers(assignment: str) -> tuple[OtherAnswer, ...]:
 
 
 def _answer(folder: Path, name: str, difference: str) -> OtherAnswer:
-    known = sorted(variant.name for variant in folder.iterdir() if variant.is_dir())
-    if name not in known:
+    variants = sorted(variant.name for variant in folder.iterdir() if variant.is_dir())
+    if name not in variants:
         raise UsageError(
-            f"{folder / SHOWN} names {name!r}, which is not a variant; the variants are: {', '.join(known)}"
+            f"{folder / INDEX_FILE} names {name!r}, which is not a variant; the variants are: {', '.join(variants)}"
         )
     paths = sorted(path for path in (folder / name).rglob("*") if path.is_file())
     return OtherAnswer(difference, tuple((path.relative_to(folder / name).as_posix(), _text(path)) for path in paths))
 
 
 def _text(path: Path) -> str:
-    """Return the text of a file; of a Python file, without the licence at its head."""
+    """Return the text of a file, without the licence at the top of a Python file."""
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
     if path.suffix == ".py":
         lines = list(dropwhile(lambda line: line.startswith("#") or not line.strip(), lines))

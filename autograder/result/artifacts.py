@@ -11,7 +11,7 @@ from autograder.result.model import Artifact
 from sim import Recording
 
 if TYPE_CHECKING:
-    from autograder.suite.temporal import Verdict  # at run time, rtamt is slow to import
+    from autograder.suite.temporal import Verdict  # not imported at run time, because rtamt is slow to import
 
 DPI = 96
 
@@ -23,7 +23,7 @@ class Artifacts:
     folder: Path  # folder that gets the pictures
     check: str = ""  # id of the check, the first part of the file names
     disabled: bool = False  # whether nothing is saved
-    recordings: bool = False  # whether whole recordings are saved, too
+    recordings: bool = False  # whether whole recordings are also saved
     # Records of the pictures that were saved. The artifacts of all checks share this list.
     saved: list[Artifact] = field(default_factory=list)
 
@@ -41,7 +41,7 @@ class Artifacts:
         note: str = "",
         rules: Mapping[str, Verdict] | None = None,
     ) -> None:
-        """Save a picture of a robot's track, and the run for the player. The digest of its record is that of the run.
+        """Save a picture of a robot's track, and its run for the player. The digest in the record is that of the run.
 
         Args:
             name: name of the picture, unique in the check.
@@ -49,8 +49,7 @@ class Artifacts:
             caption: alternative text of the picture.
             mark: the time to mark on the track, in seconds since the start of the run.
             note: text beside the mark.
-            rules: the result of each rule for the run, by the rule in words; its times count from the
-                start of the run.
+            rules: the verdict on each rule, by the rule in words. Its times are in seconds since the start of the run.
         """
         if self.disabled:
             return

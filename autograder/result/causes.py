@@ -14,7 +14,7 @@ from autograder.result.model import CheckResult
 from autograder.suite import Outcome
 
 FAILED_AS_WELL = "These also failed. Fix the one above first, then run again:"
-MAX_NAMED = 3  # titles in the line about unchecked behaviour
+MAX_NAMED = 3  # the most titles in the line about checks that could not run
 
 
 @dataclass(frozen=True)
@@ -33,17 +33,17 @@ class Cause:
 
     @property
     def checks(self) -> tuple[CheckResult, ...]:
-        """All of its checks."""
+        """The check and its consequences."""
         return self.check, *self.failed, *self.unchecked
 
     @property
     def lost(self) -> float:
-        """The points that it costs, rounded so that sums of the same points are equal."""
+        """The points lost by this cause, rounded so that sums of the same points are equal."""
         return round(math.fsum(check.max_points - check.points for check in self.checks), 4)
 
     @property
     def not_checked(self) -> str:
-        """The line about checks that could not run, or an empty string. It names a few checks, but only counts many."""
+        """The line about checks that could not run, or an empty string. It names at most `MAX_NAMED` checks."""
         if not self.unchecked:
             return ""
         titles = " ".join(check.title for check in self.unchecked)
@@ -65,14 +65,14 @@ def causes(checks: Sequence[CheckResult], diagnosis: str = "") -> tuple[Cause, .
     """
     indices = {check.id: index for index, check in reversed(list(enumerate(checks)))}
     cause_of = [_cause_of(index, checks, indices) for index in range(len(checks))]
-    first_with: dict[str, int] = {}  # for each message, the index of the first check with it
+    first_with_message: dict[str, int] = {}  # for each message, the index of the first check with it
     for index in sorted(set(cause_of)):
         check = checks[index]
         is_shared = check.outcome is Outcome.NOT_CHECKED or (
             check.outcome is Outcome.FAILED and check.message == diagnosis
         )
-        if is_shared and first_with.setdefault(check.message, index) != index:
-            cause_of = [first_with[check.message] if other == index else other for other in cause_of]
+        if is_shared and first_with_message.setdefault(check.message, index) != index:
+            cause_of = [first_with_message[check.message] if other == index else other for other in cause_of]
     consequences_of: dict[int, list[CheckResult]] = {index: [] for index in sorted(set(cause_of))}
     for index, check in enumerate(checks):
         if cause_of[index] != index:
@@ -94,7 +94,7 @@ def costliest_failure(all_causes: Sequence[Cause]) -> CheckResult | None:
 
 
 def _cause_of(index: int, checks: Sequence[CheckResult], indices: Mapping[str, int]) -> int:
-    """Return the index of the check that caused a failure: the check's own if it passed, or if no other caused it."""
+    """Return the index of the check that caused a failure, or `index` if the check passed or failed by itself."""
     visited: set[int] = set()
     while checks[index].outcome is not Outcome.PASSED and index not in visited:
         visited.add(index)

@@ -1,4 +1,4 @@
-"""The folder of a class's results: its own files, and beside them a folder for each student."""
+"""The folder of a class's results: files about the class, and a folder for each student."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import os
 from autograder.result.model import UNFINISHED
 
 SUMMARY = "index.html"  # the table of the class
-EARLIER_MARKS = "earlier-marks.json"  # a list of results; `autograder compare` reads it, too
+EARLIER_MARKS = "earlier-marks.json"  # a list of results, which `autograder compare` can read
 COLLECTION_REPORT = "handed_in.json"  # the late students, and the files that belong to no student
-ONE, MANY = "result.json", "results.json"  # a result, and a list of them, which are looked for by these names
-FILES = frozenset((SUMMARY, EARLIER_MARKS, COLLECTION_REPORT, ONE, MANY))
+RESULT, RESULTS = "result.json", "results.json"  # one result, or a list of results
+FILES = frozenset((SUMMARY, EARLIER_MARKS, COLLECTION_REPORT, RESULT, RESULTS))
 
-MAX_NAME = 255  # bytes, of Linux's file systems
+MAX_NAME = 255  # bytes, the limit of Linux's file systems
 
 
-def why_not_a_folder(student: str) -> str:
-    """Return why the name of a student cannot be that of a folder here, as the end of a sentence; empty if it can."""
+def folder_name_problem(student: str) -> str:
+    """Return a clause that says why a student's name cannot be a folder's name here, or an empty string if it can."""
     if student in FILES:
         return f"{student} is the name of a file beside the results: give it another name"
     if student in ("", ".", "..", UNFINISHED) or "/" in student or "\0" in student:

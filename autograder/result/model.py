@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from jsonschema.protocols import Validator
 
 SCHEMA = "autograder-result/1"
-UNFINISHED = ".unfinished"  # in the folder of a result: the folder of a grading that is to replace it
-MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; so short a delay makes a program fail no check
+UNFINISHED = ".unfinished"  # in the folder of a result: the folder of a grading that will replace the result
+MAX_HARMLESS_DELAY = 0.1  # s, one period at 10 Hz; a shorter delay of a program makes no check fail
 
 
 class Status(str, Enum):
@@ -41,7 +41,7 @@ class Status(str, Enum):
 
     @property
     def words(self) -> str:
-        """The status as people read it."""
+        """The status in words, for people."""
         return self.value.replace("_", " ")
 
 
@@ -101,13 +101,13 @@ class CheckResult:
 
     @classmethod
     def not_checked(cls, check: Check, reason: str, *, seconds: float = 0.0) -> CheckResult:
-        """Return the result of a check that was not run, or not to its end."""
+        """Return the result of a check that did not run to its end."""
         return cls.of(check, Outcome.NOT_CHECKED, f"not checked: {reason}", seconds=seconds)
 
 
 @dataclass(frozen=True)
 class Build:
-    """The result of building the student's packages. `log` is the end of colcon's output on those that failed."""
+    """The result of building the student's packages. `log` is the end of colcon's output about packages that failed."""
 
     ok: bool
     seconds: float
@@ -124,7 +124,7 @@ class Artifact:
 
     name: str  # path of the file, below the folder of the result
     kind: str  # kind of the artifact, such as "track"
-    # Digest of the file; of the recording for a track, as the bytes of a picture may differ from run to run.
+    # Digest of the file. For a track, it is that of the recording, as the bytes of its picture may vary.
     sha256: str
     check: str  # id of the check that saved it
     caption: str = ""  # alternative text of the picture
@@ -133,7 +133,7 @@ class Artifact:
 
 @dataclass(frozen=True)
 class Result:
-    """Everything that is recorded of one graded submission."""
+    """Everything that is recorded about one graded submission."""
 
     assignment: str
     student: str
@@ -152,11 +152,11 @@ class Result:
     phases: Mapping[str, float] = dataclasses.field(default_factory=dict)  # wall time of each phase, in seconds
     time: str = "lockstep"  # "lockstep", or "real" if a program's time could not be stepped
     time_note: str = ""  # the sentence that names that program and the reason
-    unjudged: tuple[str, ...] = ()  # ids of checks that raised an error over the student's data
+    unjudged: tuple[str, ...] = ()  # ids of checks in which the student's data caused an error
     notices: tuple[str, ...] = ()  # sentences for the student about the graded files
-    unused: tuple[str, ...] = ()  # submitted files that do not count, by their paths
-    held_up: float = 0.0  # the longest delay, in seconds, of that program or the grader by a busy machine
-    files_digest: str = ""  # digest of every file that the grading read; `suite_version` changes only when marks can
+    unused: tuple[str, ...] = ()  # paths of submitted files that do not count, or sentences about skipped files
+    held_up: float = 0.0  # the longest time, in seconds, for which a busy machine delayed that program or the grader
+    files_digest: str = ""  # digest of every file that the grading read, even if `suite_version` ignores it
     launch: str = ""  # versions of the real launch, launch_ros and ros2cli, or "stand-ins"
     # The folder of its artifacts. It is not part of the JSON form; the reader of a file sets it.
     folder: Path = dataclasses.field(default=Path(), compare=False)
@@ -174,18 +174,18 @@ class Result:
     @property
     def in_doubt(self) -> bool:
         """Whether points may have been lost because the machine was busy."""
-        lost = any(check.outcome is Outcome.FAILED for check in self.checks)
-        return self.time == "real" and self.held_up > MAX_HARMLESS_DELAY and lost
+        has_lost_points = any(check.outcome is Outcome.FAILED for check in self.checks)
+        return self.time == "real" and self.held_up > MAX_HARMLESS_DELAY and has_lost_points
 
     def group(self, name: str) -> tuple[CheckResult, ...]:
         """Return the checks that count for one locked grade cell."""
         return tuple(check for check in self.checks if check.group == name)
 
     def only(self, check: str) -> Result:
-        """Return the result with one check alone."""
-        (kept,) = (each for each in self.checks if each.id == check)
+        """Return a copy of the result that contains only one check."""
+        (selected,) = (result for result in self.checks if result.id == check)
         artifacts = tuple(artifact for artifact in self.artifacts if artifact.check == check)
-        return dataclasses.replace(self, checks=(kept,), max_score=kept.max_points, artifacts=artifacts)
+        return dataclasses.replace(self, checks=(selected,), max_score=selected.max_points, artifacts=artifacts)
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON form."""
@@ -200,7 +200,7 @@ def _enum_value(value: object) -> object:
     raise TypeError(f"{type(value).__name__} has no JSON form")
 
 
-_first_use = Lock()  # two threads that import jsonschema at once fail: its modules import each other
+_import_lock = Lock()  # jsonschema cannot be imported in two threads at once: its modules import each other
 
 
 @cache
@@ -218,13 +218,13 @@ def _validator() -> Validator:
 
 
 def from_json(data: Any, *, source: str = "result", folder: Path = Path()) -> Result:
-    """Return the result that a JSON form describes; `source` is the name of its file, for the error.
+    """Return the result that a JSON form describes; `source` names its file in an error.
 
     Raises:
         UsageError: `data` does not match the schema, or has more points than possible. The message names `source`.
     """
-    with _first_use:
-        from jsonschema.exceptions import best_match  # imported here because it takes a second; workers do not need it
+    with _import_lock:
+        from jsonschema.exceptions import best_match  # slow to import, and workers do not need it
 
         validator = _validator()
     error = best_match(validator.iter_errors(data))
@@ -241,11 +241,11 @@ def from_json(data: Any, *, source: str = "result", folder: Path = Path()) -> Re
 
 
 def structure(kind: Any, data: Any) -> Any:
-    """Return the value of a type that JSON describes; fields that this version does not know are left out."""
+    """Return the value of type `kind` from its JSON form, and ignore fields that this version does not know."""
     if dataclasses.is_dataclass(kind):
         known = get_type_hints(kind)
         return kind(**{name: structure(known[name], value) for name, value in data.items() if name in known})  # type: ignore[operator]
-    if get_origin(kind) is UnionType:  # with None
+    if get_origin(kind) is UnionType:  # an optional value
         return None if data is None else structure(get_args(kind)[0], data)
     if get_origin(kind) is tuple:
         return tuple(structure(get_args(kind)[0], item) for item in data)
@@ -255,13 +255,13 @@ def structure(kind: Any, data: Any) -> Any:
 def write_json(path: Path, data: object) -> None:
     """Write JSON atomically."""
     text = json.dumps(data, indent=2, ensure_ascii=False, default=_enum_value) + "\n"
-    # Half a surrogate pair, which a file name that is not UTF-8 gives, is written as a JSON escape.
+    # A file name that is not UTF-8 contains lone surrogates. They are written as JSON escapes.
     write_atomically(path, text.encode("utf-8", "backslashreplace"))
 
 
 def write_atomically(path: Path, data: bytes) -> None:
     """Write a file beside `path`, and rename it to `path`. Its folder is created if it does not exist."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    fresh = path.with_name(f".{path.name}.{os.getpid()}")
-    fresh.write_bytes(data)
-    fresh.replace(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary.write_bytes(data)
+    temporary.replace(path)

@@ -1,8 +1,8 @@
-"""The one place that knows how ROS 2 is found, switched on and described.
+"""Finds, activates and describes ROS 2.
 
-`find()` says which ROS 2 this interpreter can use: a sourced installation wins, then the wheels of this
-virtual environment. `activate()` switches it on for this process; `RosEnvironment.variables()` are the
-environment variables that a child process needs.
+`find()` returns the ROS 2 that this interpreter can import: a sourced installation, or else the wheels in this virtual
+environment. `activate()` activates it for this process. `RosEnvironment.variables()` returns the environment variables
+that a child process needs.
 """
 
 from autograder.ros.environment import RosEnvironment, activate, find

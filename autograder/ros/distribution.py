@@ -1,6 +1,6 @@
-"""The ROS 2 distribution of the course. Its facts are in `distribution.json` beside this, and nowhere else in code.
+"""The ROS 2 distribution of the course, read from `distribution.json`. No other code repeats facts of that file.
 
-`autograder/bootstrap.py` and the Makefiles read that file by themselves, since they run before anything is installed.
+`autograder/bootstrap.py` and the Makefiles read the file themselves, since they run before anything is installed.
 `docs/distribution.md` lists the other changes for a course on another distribution.
 """
 
@@ -15,14 +15,14 @@ from typing import Any
 
 @dataclass(frozen=True)
 class PlatformPackage:
-    """A package of Python, or a tool that pip installs, as the distribution's platform has it.
+    """A Python package or tool that pip installs, and its version on the distribution's platform.
 
     Attributes:
         name: its name in pip.
         debian: its name in apt.
-        version: the version of the platform.
-        meets: where a student meets it.
-        differs: why another version may be installed; empty where none may.
+        version: its version on the platform.
+        meets: where students use it.
+        differs: the reason why a different version may be installed, or an empty string if none may.
     """
 
     name: str
@@ -38,17 +38,17 @@ class Distribution:
 
     Attributes:
         name: the value of ROS_DISTRO, and the name of branches in ROS's repositories.
-        title: how people write it.
-        rclpy: the first two numbers of its rclpy's version.
-        pythons: the versions of Python that its wheels are for. The platform's own comes first.
+        title: its name in text.
+        rclpy: the major and minor version of its rclpy.
+        pythons: the Python versions that its wheels support. The platform's default comes first.
         setup: the file that a shell sources if ROS is installed from packages.
-        docs: the address of its documentation.
-        platform: the system that it belongs to.
-        platform_page: the address of the versions of that system.
-        tags: the tag that is installed of each source repository, by the repository's name.
-        commits: the commit of each of these tags, 40 hexadecimal digits. It is a digest of all that the tag holds.
-        packages: what students' programs, builds and tests meet. The versions are those of `platform_page`, and that
-            of catkin_pkg is from ROS's own package repository.
+        docs: the URL of its documentation.
+        platform: the operating system that it is made for.
+        platform_page: the URL of the page that lists the package versions of that system.
+        tags: the tag of each source repository that is installed, by the repository's name.
+        commits: the commit of each of these tags as 40 hexadecimal digits, a digest of the tag's whole content.
+        packages: the packages that students' programs, builds and tests use. Versions are those of `platform_page`,
+            except for catkin_pkg, whose version is from ROS's own package repository.
     """
 
     name: str
@@ -72,7 +72,7 @@ class Distribution:
 
     @property
     def variables(self) -> dict[str, str]:
-        """The environment variables by which ROS's tools know the distribution."""
+        """The environment variables that tell ROS's tools which distribution this is."""
         return {"ROS_DISTRO": self.name, "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
 
     @property
@@ -82,10 +82,10 @@ class Distribution:
         return f"{first} to {last}"
 
     def differences(self, installed: Mapping[str, str | None]) -> dict[PlatformPackage, str | None]:
-        """Return the packages that are installed in another version than the platform's, each with that version.
+        """Return the packages whose installed version differs from the platform's, with the installed version.
 
         Args:
-            installed: the version of each package by pip's name; None for one that is not there.
+            installed: the installed version of each package by its name in pip, or None if it is not installed.
         """
         return {p: installed[p.name] for p in self.packages if installed[p.name] != p.version}
 

@@ -1,10 +1,10 @@
-"""Claims a `ROS_DOMAIN_ID` that no other caller on this machine has.
+"""Claims a `ROS_DOMAIN_ID` that no other program on this machine has claimed.
 
-A claim is a socket of the operating system's: it ends with its process, however that ends, and reaches as far as a
-domain does on one machine, its network namespace. Programs that choose a domain without asking are not kept out.
+A claim is an abstract Unix socket. It ends with its process, even after a crash. Like the traffic of the domain, it is
+limited to one network namespace of the machine. Programs that use a domain without a claim are not detected.
 
-A user's notebooks and terminals share one domain. Each of them adds a socket with the user's id in its name, so the
-domain stays the user's until the last of them ends.
+A user's notebooks and terminals share one domain. Each of them binds a socket with the user's id in its name, so the
+user keeps the domain until the last of them ends.
 """
 
 from __future__ import annotations
@@ -21,47 +21,48 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 
-from autograder.ros.exceptions import NoDomainLeftError
+from autograder.ros.exceptions import NoFreeDomainError
 
-DOMAINS = range(1, 102)  # 0 is everybody's; above 101, ports fall into the range that Linux hands out to others
-_NAMES = Path("/proc/net/unix")  # all such sockets of this network namespace; `@` begins a name without a file
-_TURN_SECONDS = 10.0
-_SHARE = re.compile(r" @ros-domain-(?P<number>\d+)-(?P<user>\d+)-(?P<share>[0-9a-f]+)$", re.MULTILINE)
+DOMAINS = range(1, 102)  # 0 is every program's default; above 101, the ports are in Linux's ephemeral range
+_UNIX_SOCKETS = Path("/proc/net/unix")  # lists the sockets of this network namespace; `@` marks an abstract name
+_LOCK_TIMEOUT = 10.0  # s; how long to wait for another program of the user that is choosing a domain
+_SHARE = re.compile(r" @ros-domain-(?P<number>\d+)-(?P<user>\d+)-(?P<token>[0-9a-f]+)$", re.MULTILINE)
 
 
 class Domain:
-    """A domain that is claimed until it is closed or this process ends.
+    """A claimed domain. `close` or the end of this process releases it.
 
     Attributes:
         number: its `ROS_DOMAIN_ID`.
     """
 
     def __init__(self, first: int | None = None, *, user: int | None = None) -> None:
-        """Claim the domain that the user has, or the first free one.
+        """Claim the domain that the user's other programs share, or the first free one.
 
         Args:
-            first: where to begin to look, any number; drawn from the process's own, or from the user's, when not given.
-            user: the id of the user whose claims all get the same domain. By default, the claim shares with no other.
+            first: any number, which determines the domain that is tried first. By default, it is derived from the
+                process id, or from the user id if `user` is given.
+            user: a user id. All claims of this user share one domain. By default, the domain is not shared.
 
         Raises:
-            NoDomainLeftError: all domains are in use.
+            NoFreeDomainError: all domains are in use.
         """
         self._descriptors: tuple[int, ...] = ()
         if user is None:
-            self._take(os.getpid() if first is None else first)
+            self._claim_free(os.getpid() if first is None else first)
             return
-        with _turn(user):  # two programs that the user starts at the same time do not take one domain each
+        with _lock(user):  # so that two programs started at the same time share a domain
             if not self._join(user):
-                self._take(_usual(user) if first is None else first)
+                self._claim_free(_default_start(user) if first is None else first)
                 self._descriptors += (_bind(_share_name(self.number, user)),)
 
-    def keep_in_next_program(self) -> None:
-        """Keep the domain claimed when this process becomes another program by `exec`."""
+    def keep_across_exec(self) -> None:
+        """Keep the domain claimed when this process calls `exec`."""
         for descriptor in self._descriptors:
             os.set_inheritable(descriptor, True)
 
     def close(self) -> None:
-        """Leave the domain to others."""
+        """Release the domain."""
         for descriptor in self._descriptors:
             os.close(descriptor)
         self._descriptors = ()
@@ -70,13 +71,13 @@ class Domain:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.close()
 
-    def _take(self, start: int) -> None:
-        for step in range(len(DOMAINS)):
-            number = DOMAINS[(start + step) % len(DOMAINS)]
+    def _claim_free(self, start: int) -> None:
+        for offset in range(len(DOMAINS)):
+            number = DOMAINS[(start + offset) % len(DOMAINS)]
             try:
                 claim = _bind(f"ros-domain-{number}")
             except OSError:
@@ -84,32 +85,32 @@ class Domain:
             if not any(int(share["number"]) == number for share in _shares()):
                 self.number, self._descriptors = number, (claim,)
                 return
-            os.close(claim)  # the program that took it has ended, but not all that share it
-        raise NoDomainLeftError(
+            os.close(claim)  # the program that claimed it has ended, but other programs still share it
+        raise NoFreeDomainError(
             f"all {len(DOMAINS)} ROS domains of this machine are in use: stop notebooks and programs that you do not "
             "need, or try again later"
         )
 
     def _join(self, user: int) -> bool:
-        """Share the domain that the user has; return whether there is one."""
+        """Join the domain that the user's other programs share; return whether they have one."""
         for share in _shares(user):
             number = int(share["number"])
-            own = _bind(_share_name(number, user))
-            # It is still there, so in between nobody else can have taken the domain.
-            if share["share"] in {other["share"] for other in _shares(user)}:
-                self.number, self._descriptors = number, (own,)
+            claim = _bind(_share_name(number, user))
+            # If the other program's share still exists, the domain cannot have been released in between.
+            if share["token"] in {other["token"] for other in _shares(user)}:
+                self.number, self._descriptors = number, (claim,)
                 return True
-            os.close(own)
+            os.close(claim)
         return False
 
 
-def _usual(user: int) -> int:
-    """Return where to look first: another number for each user of a machine, and for the same user elsewhere."""
+def _default_start(user: int) -> int:
+    """Return the number at which the search starts, which depends on the user and on the machine's name."""
     return user + zlib.crc32(platform.node().encode())
 
 
 def _bind(name: str) -> int:
-    """Return the descriptor of a socket with this name. It is open for as long as the process, without an object."""
+    """Bind a socket to this abstract name, and return its descriptor, which stays open until the process ends."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as claim:
         claim.bind(f"\0{name}")
         return claim.detach()
@@ -120,27 +121,27 @@ def _share_name(number: int, user: int) -> str:
 
 
 def _shares(user: int | None = None) -> list[re.Match[str]]:
-    """Return the shares in the domains of all users, or of one."""
+    """Return a match for each socket that shares a domain of this user, or of any user."""
     try:
-        names = _NAMES.read_text(errors="replace")
-    except OSError:  # not every sandbox has the file; then each program has a domain for itself
+        names = _UNIX_SOCKETS.read_text(errors="replace")
+    except OSError:  # some sandboxes do not have this file; then no domain is shared
         return []
     return [share for share in _SHARE.finditer(names) if user is None or int(share["user"]) == user]
 
 
 @contextlib.contextmanager
-def _turn(user: int) -> Iterator[None]:
-    """Run the block while no other process does for this user; after `_TURN_SECONDS`, run it all the same."""
-    name, deadline = f"\0ros-domains-of-{user}", time.monotonic() + _TURN_SECONDS
-    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as turn:
+def _lock(user: int) -> Iterator[None]:
+    """Hold the user's lock while the block runs. If the lock is not free in time, run the block without it."""
+    name, deadline = f"\0ros-domains-of-{user}", time.monotonic() + _LOCK_TIMEOUT
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as lock:
         while time.monotonic() < deadline:
             try:
-                turn.bind(name)
-                turn.listen()
+                lock.bind(name)
+                lock.listen()
                 break
             except OSError:
-                with contextlib.suppress(OSError), socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as waiting:
-                    waiting.settimeout(_TURN_SECONDS)
-                    waiting.connect(name)
-                    waiting.recv(1)  # returns when the other process closes its socket
+                with contextlib.suppress(OSError), socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as client:
+                    client.settimeout(_LOCK_TIMEOUT)
+                    client.connect(name)
+                    client.recv(1)  # returns when the other process closes its socket
         yield

@@ -1,4 +1,4 @@
-"""Finding ROS 2 and switching it on, for this process and for its children."""
+"""Finds ROS 2, and activates it for this process and its children."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.exceptions import RosNotFoundError, WrongDistroError
 from autograder.ros.log_folder import log_folder
 
-# The wheels' start-up hook sets these two for one Python prefix; they must not leak into another one.
+# The wheels' start-up hook sets these two variables for one Python prefix. They must not leak into another prefix.
 WHEEL_BOOTSTRAP_VARIABLES = ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH")
 
-# Logs go to stderr, and `ros2 launch` shows the stderr of each node. With this, they go to stdout: Jupyter shows stdout
-# in order, and stderr in red, and late. A terminal does without, so that it shows what a terminal with ROS shows.
+# ROS logs to stderr by default. Jupyter shows stderr in red and late, but stdout in order. Only notebooks set this
+# variable, so that programs in a terminal print what they print with any ROS.
 LOGS_TO_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1"}
 
 
 def without_wheel_bootstrap(environ: Mapping[str, str]) -> dict[str, str]:
     """Return the variables for a Python that has to run the wheels' start-up hook again.
 
-    A sourced ROS's own LD_LIBRARY_PATH stays: only the hook's is taken away.
+    LD_LIBRARY_PATH is removed only if the hook set it. The value of a sourced ROS is kept.
     """
     marker = WHEEL_BOOTSTRAP_VARIABLES[0]
-    dropped = WHEEL_BOOTSTRAP_VARIABLES if environ.get(marker) else ()
-    return {name: value for name, value in environ.items() if name not in dropped}
+    dropped_names = WHEEL_BOOTSTRAP_VARIABLES if environ.get(marker) else ()
+    return {name: value for name, value in environ.items() if name not in dropped_names}
 
 
 def site_packages(prefix: Path) -> Path:
-    """Return the folder of a prefix in which its packages' Python modules are installed."""
+    """Return the folder of an install prefix that contains its Python modules."""
     return prefix / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
 
 
@@ -44,8 +44,8 @@ class RosEnvironment:
 
     Attributes:
         kind: `wheels` (pip, in this virtual environment) or `sourced` (a `setup.bash` was sourced).
-        prefixes: ament prefixes of the installation, the first one wins; sourced workspaces are none of them.
-        rclpy: the folder that `import rclpy` would load.
+        prefixes: the ament prefixes of the installation, in order of precedence, without those of sourced workspaces.
+        rclpy: the folder from which `import rclpy` loads the package.
     """
 
     kind: Literal["wheels", "sourced"]
@@ -53,9 +53,9 @@ class RosEnvironment:
     rclpy: Path
 
     def describe(self) -> str:
-        """Say in one line which ROS 2 this is and where it lives."""
-        where = "wheels in" if self.kind == "wheels" else "sourced from"
-        return f"ROS 2 {DISTRIBUTION.title}, {where} {self.prefixes[0]}"
+        """Return one line that names the distribution, the kind of installation and its folder."""
+        origin = "wheels in" if self.kind == "wheels" else "sourced from"
+        return f"ROS 2 {DISTRIBUTION.title}, {origin} {self.prefixes[0]}"
 
     def variables(
         self,
@@ -64,12 +64,14 @@ class RosEnvironment:
         domain: int | None = None,
         log_dir: Path | None = None,
     ) -> dict[str, str]:
-        """Return the environment variables that a process using this ROS 2 needs.
+        """Return the environment variables that a process needs to use this ROS 2.
 
         Args:
-            overlays: install prefixes of colcon workspaces, the nearest first; they go before the installation.
-            domain: `ROS_DOMAIN_ID` (0 to 232); left alone when not given.
-            log_dir: a writable folder for log files, `log_folder()` by default. `rclpy.init` raises without one.
+            overlays: install prefixes of colcon workspaces, in order of precedence. They take precedence over the
+                installation.
+            domain: `ROS_DOMAIN_ID` (0 to 232). By default, it is not set.
+            log_dir: a writable folder for log files, without which `rclpy.init` raises an error. The default is
+                `log_folder()`.
 
         Raises:
             ValueError: `domain` is outside 0..232.
@@ -81,7 +83,7 @@ class RosEnvironment:
             "AMENT_PREFIX_PATH": path,
             "CMAKE_PREFIX_PATH": path,
             **DISTRIBUTION.variables,
-            # Shared memory between two /dev/shm discovers peers and then silently delivers nothing.
+            # Over shared memory, processes with different /dev/shm discover each other but receive no messages.
             "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
             "RCUTILS_LOGGING_BUFFERED_STREAM": "0",
             "ROS_LOG_DIR": str(log_dir or log_folder()),
@@ -95,7 +97,7 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
     """Find the ROS 2 that this interpreter would import.
 
     Args:
-        environ: environment variables to look in, `os.environ` by default.
+        environ: the environment variables to use, `os.environ` by default.
 
     Raises:
         RosNotFoundError: `rclpy` cannot be imported.
@@ -119,35 +121,35 @@ def find(environ: Mapping[str, str] | None = None) -> RosEnvironment:
         )
     prefixes = tuple(Path(part) for part in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part)
     # The prefixes before the installation are workspaces: sourced by the user, or built and loaded by this process.
-    installed = [index for index, prefix in enumerate(prefixes) if rclpy.is_relative_to(prefix)]
-    if not installed:
+    installation_indices = [index for index, prefix in enumerate(prefixes) if rclpy.is_relative_to(prefix)]
+    if not installation_indices:
         raise RosNotFoundError(f"rclpy is at {rclpy}, but not in AMENT_PREFIX_PATH: source {DISTRIBUTION.setup}")
-    return RosEnvironment("sourced", prefixes[installed[0] :], rclpy)
+    return RosEnvironment("sourced", prefixes[installation_indices[0] :], rclpy)
 
 
 def activate(*, overlays: tuple[Path, ...] = (), domain: int | None = None) -> RosEnvironment:
     """Activate ROS 2 for this process and its children. A second call changes nothing.
 
-    Call it before the first `import rclpy`. Workspaces that are sourced already stay sourced. `ros2` and `colcon` are
-    found by their names, also where this Python's environment was not activated, as in a notebook's kernel.
+    Call it before the first `import rclpy`. Workspaces that are already sourced stay sourced. PATH is extended so that
+    it contains `ros2` and `colcon` even if the virtual environment was not activated, as in a notebook's kernel.
 
     Raises:
         RosError: no usable ROS 2 of the course's distribution was found.
     """
     environment = find()
-    sourced = [Path(part) for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
-    kept = tuple(path for path in sourced if path not in {*overlays, *environment.prefixes})
-    variables = environment.variables(overlays=(*overlays, *kept), domain=domain)
-    # The two that a user may have chosen on purpose stay.
-    for chosen in ("ROS_LOG_DIR", "FASTDDS_BUILTIN_TRANSPORTS"):
-        if chosen in os.environ:
-            variables.pop(chosen)
+    sourced_prefixes = [Path(part) for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
+    workspaces = tuple(path for path in sourced_prefixes if path not in {*overlays, *environment.prefixes})
+    variables = environment.variables(overlays=(*overlays, *workspaces), domain=domain)
+    # If the user has set one of these, keep that value.
+    for name in ("ROS_LOG_DIR", "FASTDDS_BUILTIN_TRANSPORTS"):
+        if name in os.environ:
+            variables.pop(name)
     os.environ.update(variables)
     os.environ["PATH"] = path_with_scripts()
     return environment
 
 
 def path_with_scripts() -> str:
-    """Return PATH with the folder of this Python's own programs, in front if it was not there."""
+    """Return PATH, with this Python's scripts folder in front if PATH does not contain it."""
     scripts, path = sysconfig.get_path("scripts"), os.environ.get("PATH", os.defpath)
     return path if scripts in path.split(os.pathsep) else os.pathsep.join([scripts, path])

@@ -1,14 +1,14 @@
-"""Errors of finding and using ROS 2.
+"""Errors that occur when ROS 2 is found and used.
 
 RosError
-├── RosNotFoundError   neither a sourced ROS 2 nor the wheels are there
-├── WrongDistroError   a ROS 2 is sourced, but it is of another distribution
-└── NoDomainLeftError  each ROS domain of this machine is in use
+├── RosNotFoundError   neither a sourced ROS 2 nor its wheels can be imported
+├── WrongDistroError   the sourced ROS 2 is a different distribution from the course's
+└── NoFreeDomainError  all ROS domains of this machine are in use
 """
 
 
 class RosError(Exception):
-    """Base of every error about the ROS 2 installation."""
+    """Base class of all errors about the ROS 2 installation."""
 
 
 class RosNotFoundError(RosError):
@@ -16,8 +16,8 @@ class RosNotFoundError(RosError):
 
 
 class WrongDistroError(RosError):
-    """The sourced ROS 2 is of another distribution than the course's."""
+    """The sourced ROS 2 is a different distribution from the course's."""
 
 
-class NoDomainLeftError(RosError):
-    """Each ROS domain of this machine is in use."""
+class NoFreeDomainError(RosError):
+    """All ROS domains of this machine are in use."""

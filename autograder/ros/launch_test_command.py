@@ -1,4 +1,4 @@
-"""The command `launch_test FILE` of the real `launch_testing`. The stand-in lacks it, and its error says so."""
+"""The command `launch_test FILE`, which runs the real `launch_testing`. With the stand-in, it only prints an error."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from autograder.ros.exceptions import RosError
 
 
 def main() -> None:
-    """Switch ROS 2 on and run the file that the command line names; exit as `launch_testing` does."""
+    """Activate ROS 2 and run the file that the command line names. The exit code is that of `launch_testing`."""
     try:
         activate()
     except RosError as error:

@@ -16,10 +16,10 @@ from pathlib import Path
 
 
 def log_folder(environ: Mapping[str, str] | None = None) -> Path:
-    """Return a private folder for this user's log files, which is created if it does not exist.
+    """Return a private folder for this user's log files, and create it if it does not exist.
 
-    It is ROS's default, `$ROS_HOME/log` or `~/.ros/log`. If that belongs to another user, is open to others or cannot
-    be created, it is a new folder, the same for this process and its children.
+    This is ROS's default folder, `$ROS_HOME/log` or `~/.ros/log`. If that belongs to another user, is writable by
+    others or cannot be created, a temporary folder is created once per process.
     """
     environ = os.environ if environ is None else environ
     home = environ.get("ROS_HOME") or environ.get("HOME", "")
@@ -27,17 +27,17 @@ def log_folder(environ: Mapping[str, str] | None = None) -> Path:
         folder = Path(home, "log" if environ.get("ROS_HOME") else ".ros/log")
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-            if _is_ours(folder):
+            if _is_private(folder):
                 return folder
-    return _fresh()
+    return _temporary_folder()
 
 
-def _is_ours(folder: Path) -> bool:
+def _is_private(folder: Path) -> bool:
     status = folder.stat()
-    # The group may be the user's own, as on Ubuntu.
+    # The group may have write access: on Ubuntu, it is the user's own.
     return status.st_uid == os.geteuid() and not status.st_mode & stat.S_IWOTH and os.access(folder, os.W_OK | os.X_OK)
 
 
 @cache
-def _fresh() -> Path:
+def _temporary_folder() -> Path:
     return Path(tempfile.mkdtemp(prefix="ros2-log-"))

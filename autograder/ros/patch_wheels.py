@@ -1,13 +1,15 @@
-"""Patches the ROS wheels after pip, where they do not work as they are.
+"""Patches files of the installed ROS wheels that do not work as shipped.
 
-Their CMake files name folders of the machine that built them: the exported targets carry `/opt/python/cp3XX-cp3XX/...`
-for Python's and numpy's headers, so no message package compiles until they point at this interpreter. And ament_flake8
-lets flake8 fork: beside tests that have used rclpy, whose threads a fork does not copy, the forked process may crash,
-and flake8 replaces it for ever. And rclpy 7.1's MultiThreadedExecutor looks again and again at the callback that it has
-given to a thread, and so keeps that thread from the interpreter: on an idle machine a 10 Hz timer beside a 10 Hz
-subscription lost a quarter of its ticks to it and took half of a core (github.com/ros2/rclpy/issues/1452). And
-ament_lint_auto has no wheel, which each CMake package that `ros2 pkg create` makes asks for. Each file is replaced
-atomically; patching them again changes nothing.
+- CMake files refer to Python's and numpy's headers by folders of the build machine, `/opt/python/cp3XX-cp3XX/...`.
+  Message packages do not compile until the files refer to this interpreter's headers.
+- ament_flake8 lets flake8 fork. After tests that have used rclpy, whose threads a fork does not copy, the forked
+  process may crash, and flake8 restarts it forever.
+- rclpy 7.1's MultiThreadedExecutor polls the callback that it has given to a thread, and so blocks that thread. On an
+  idle machine, a 10 Hz timer beside a 10 Hz subscription lost a quarter of its ticks and used half a core
+  (github.com/ros2/rclpy/issues/1452).
+- ament_lint_auto has no wheel, but every CMake package that `ros2 pkg create` creates requires it.
+
+Each file is replaced atomically. Patching a file twice has no further effect.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ import sys
 import sysconfig
 from pathlib import Path
 
-BAKED = "/opt/python/"
+BUILD_MACHINE_PYTHONS = "/opt/python/"
 _NUMPY = re.compile(r"/opt/python/cp\d+-cp\d+/lib/python3\.\d+/site-packages/numpy/_?core/include")
 _HEADERS = re.compile(r"/opt/python/cp\d+-cp\d+/include/python3\.\d+")
 _PREFIX = re.compile(r"/opt/python/cp\d+-cp\d+")
@@ -54,14 +56,14 @@ def patched(text: str, *, headers: str, numpy_headers: str, prefix: str) -> str:
     return _PREFIX.sub(lambda _: prefix, text)
 
 
-def baked_files(prefix: Path) -> list[Path]:
-    """Return the CMake files under `prefix`/share that still name the build machine."""
-    return [path for path in sorted((prefix / "share").rglob("*.cmake")) if BAKED in path.read_text()]
+def unpatched_cmake_files(prefix: Path) -> list[Path]:
+    """Return the CMake files under `prefix`/share that still contain folders of the build machine."""
+    return [path for path in sorted((prefix / "share").rglob("*.cmake")) if BUILD_MACHINE_PYTHONS in path.read_text()]
 
 
 def patch_wheels(prefix: Path) -> int:
     """Patch every CMake file under `prefix`; return how many changed."""
-    files = baked_files(prefix)
+    files = unpatched_cmake_files(prefix)
     if not files:
         return 0
     import numpy
@@ -78,7 +80,7 @@ def patch_wheels(prefix: Path) -> int:
 
 
 def patch_flake8(site_packages: Path) -> bool:
-    """Let flake8 check in one process; return whether that was to be changed."""
+    """Make ament_flake8 run flake8 in a single process; return whether the file was changed."""
     path = site_packages / FLAKE8_INI
     if not path.is_file() or ONE_PROCESS in path.read_text():
         return False
@@ -87,7 +89,7 @@ def patch_flake8(site_packages: Path) -> bool:
 
 
 def patch_executor(site_packages: Path) -> bool:
-    """Let rclpy's MultiThreadedExecutor yield to its threads; return whether that was to be changed."""
+    """Make rclpy's MultiThreadedExecutor yield to its threads; return whether the file was changed."""
     path = site_packages / EXECUTORS
     if not path.is_file() or _SUBMIT not in path.read_text():
         return False
@@ -95,8 +97,8 @@ def patch_executor(site_packages: Path) -> bool:
     return True
 
 
-def offer_lint_auto(prefix: Path) -> bool:
-    """Let CMake packages find ament_lint_auto where the wheels of ROS are; return whether it was missing."""
+def add_lint_auto(prefix: Path) -> bool:
+    """Add an empty ament_lint_auto for CMake packages to the wheels' prefix; return whether it was missing."""
     path = prefix / LINT_AUTO
     if path.is_file() or not (prefix / "share/ament_cmake").is_dir():
         return False
@@ -114,9 +116,9 @@ def link_standins(site_packages: Path) -> Path:
 
 
 def _replace(path: Path, text: str) -> None:
-    fresh = path.with_name(f".{path.name}.{os.getpid()}")
-    fresh.write_text(text)
-    fresh.replace(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary.write_text(text)
+    temporary.replace(path)
 
 
 if __name__ == "__main__":
@@ -124,6 +126,6 @@ if __name__ == "__main__":
     packages = Path(sysconfig.get_paths()["purelib"])
     patch_flake8(packages)
     patch_executor(packages)
-    offer_lint_auto(Path(sys.prefix))
+    add_lint_auto(Path(sys.prefix))
     link_standins(packages)
     print(f"patched {count} CMake files of the ROS wheels")

@@ -1,17 +1,17 @@
-"""Installing the real `launch`, `launch_ros` and `ros2cli` on top of the ROS 2 wheels.
+"""Installs the real `launch`, `launch_ros` and `ros2cli` on top of the ROS 2 wheels.
 
-These, and `ament_copyright`, have no wheels, but are pure Python: pip builds them from the source repositories that
-`launch_packages` pins. `make setup` runs this module with `--set-up`. Where the sources do not answer within ten
-seconds, or anything else fails, nothing is installed, and the stand-ins are used. ROS2_STANDINS=1 asks for them.
-`make real-launch` tries again.
+These packages and `ament_copyright` have no wheels, but are pure Python. pip builds them from the source repositories
+that `launch_packages` pins. `make setup` runs this module with `--set-up`. If the sources do not respond within ten
+seconds, or anything else fails, nothing is installed, and the stand-ins are used. ROS2_STANDINS=1 selects the
+stand-ins. `make real-launch` tries again.
 
-Each source is an environment variable, so that a local clone serves where GitHub cannot be reached:
+An environment variable overrides each source, for example with a local clone if GitHub cannot be reached:
 
     ROS2_LAUNCH_SOURCE=/clones/launch make real-launch
 
-A source is anything git can clone. The pinned commit is taken from it, or with `@tag` at its end that tag, whatever
-commit it is. `composition_interfaces`, which launch_ros imports, has to be built by colcon; it goes into the
-environment's own prefix.
+A source is anything that git can clone. By default, its tag has to be the pinned commit. A source that ends in `@tag`
+is installed at that tag, whatever its commit. `composition_interfaces`, which launch_ros imports, has to be built by
+colcon, and is installed into the environment's own prefix.
 """
 
 from __future__ import annotations
@@ -34,27 +34,27 @@ from autograder.ros.environment import RosEnvironment, find
 from autograder.ros.exceptions import RosError
 from autograder.ros.launch_packages import SOURCES, Source, describe_launch, installed_packages, python_packages
 
-CHOOSE_STANDINS = "ROS2_STANDINS"  # the environment variable that is 1 to choose the stand-ins
-REACH_SECONDS = 10.0  # for all sources together
-CLONE_SECONDS = 120.0
-BUILD_SECONDS = 600.0
-# The locks have everything else that the packages import.
+STANDINS_VARIABLE = "ROS2_STANDINS"  # an environment variable; 1 selects the stand-ins
+REACH_SECONDS = 10.0  # the time in which all sources must respond; they are asked in parallel
+CLONE_SECONDS = 120.0  # the time in which all sources must be cloned, in parallel
+BUILD_SECONDS = 600.0  # the time for any other step
+# The lock files list everything else that the packages import.
 REQUIREMENT = "osrf-pycommon==2.0.2 --hash=sha256:bba7292491db7518f84be4f11502f008cc24086790d5d8bfca2936f925bdabb5"
 
 
 class RealLaunchError(RosError):
-    """The real packages cannot be installed; the first line of the text says which step failed, and why."""
+    """The real packages cannot be installed. The first line of the message names the failed step and the reason."""
 
 
 @dataclass(frozen=True)
 class Step:
     """A command, its purpose, and a fix if it fails."""
 
-    what: str
+    action: str
     command: Sequence[str]
     hint: str = ""
-    seconds: float = BUILD_SECONDS
-    cwd: Path = Path("/")  # if no module is beside Python's own
+    timeout: float = BUILD_SECONDS
+    cwd: Path = Path("/")  # a folder without Python modules that could shadow installed ones
     variables: Mapping[str, str] | None = None
 
 
@@ -66,20 +66,21 @@ def install(
     sources: Sequence[Source] = SOURCES,
     requirement: str = REQUIREMENT,
 ) -> list[str]:
-    """Install every package of the sources, or no Python package at all.
+    """Install the packages of all sources. If that fails, none of their Python packages stays installed.
 
     Args:
-        ros: the ROS to extend; interfaces are built into its first prefix.
-        environ: where the variables of the sources are looked up.
+        ros: the ROS to extend. Interfaces are built into its first prefix.
+        environ: the environment variables, which may override the sources.
         python: the interpreter whose environment gets the Python packages.
         sources: the repositories to install, in this order.
-        requirement: a package to install from the package index first, with its hash; may be empty.
+        requirement: a package from the package index, with its hash, to install first; it may be empty.
 
     Returns:
-        The names of the packages, in the order of installation.
+        The names of the packages, in installation order.
 
     Raises:
-        RealLaunchError: `ros` is not a set of wheels, a source does not answer or has another commit, or a step failed.
+        RealLaunchError: `ros` is a sourced installation, a source does not respond or has a different commit, or a step
+            failed.
     """
     if ros.kind == "sourced":
         raise RealLaunchError(f"{ros.describe()}: it has the real launch and ros2 already, there is nothing to do")
@@ -92,29 +93,29 @@ def install(
         scratch, wheels = Path(folder), Path(folder, "wheels")
         for source, clone in _clone(sources, environ, scratch).items():
             folders = {_package_name(clone, package, source): clone / package for package in source.packages}
-            if source.built:
+            if source.is_interface:
                 _run(_colcon(folders, ros, python, scratch))
                 interface_names += folders
             else:
-                # The wheels have the dependencies already, under names that pip does not know them by.
+                # The wheels already provide the dependencies, under names that pip does not recognize.
                 options = ["--no-deps", "--no-index", "--no-build-isolation", "--wheel-dir", str(wheels)]
                 _run(Step(f"build {', '.join(folders)}", [*pip, "wheel", *options, *map(str, folders.values())]))
                 python_names += folders
         if requirement:
-            (pinned := scratch / "requirements.txt").write_text(requirement)
-            options = ["--no-deps", "--require-hashes", "-r", str(pinned)]
+            (requirements_file := scratch / "requirements.txt").write_text(requirement)
+            options = ["--no-deps", "--require-hashes", "-r", str(requirements_file)]
             _run(Step(f"install {requirement.partition('==')[0]}", [*pip, "install", *options]))
         options = ["--no-deps", "--no-index", "--force-reinstall", *map(str, sorted(wheels.glob("*.whl")))]
         try:
             _run(Step("install what was built", [*pip, "install", *options]))
-        except BaseException:  # some real packages do not work with some stand-ins
+        except BaseException:  # a mix of real packages and stand-ins may not work
             remove(python_names, python=python)
             raise
     return [*interface_names, *python_names]
 
 
 def remove(names: Sequence[str], *, python: str = sys.executable) -> None:
-    """Uninstall those of the Python packages that are installed, so that the stand-ins are imported.
+    """Uninstall Python packages, so that the stand-ins are imported. Packages that are not installed are skipped.
 
     Raises:
         RealLaunchError: pip failed.
@@ -123,21 +124,23 @@ def remove(names: Sequence[str], *, python: str = sys.executable) -> None:
 
 
 def set_up(environ: Mapping[str, str]) -> str:
-    """Install the real packages unless they exist or the stand-ins are chosen. A failure leaves the stand-ins.
+    """Install the real packages, unless they are already installed or the stand-ins are chosen.
+
+    If the installation fails, the stand-ins remain in use.
 
     Returns:
-        One line about the installed packages and the reason.
+        One line that names the installed packages and, after a failure, the reason.
 
     Raises:
-        RealLaunchError: the stand-ins are chosen, and the real packages cannot be uninstalled.
+        RealLaunchError: the stand-ins are chosen, but the real packages cannot be uninstalled.
     """
-    pinned = python_packages()
-    installed = installed_packages(pinned)
-    if environ.get(CHOOSE_STANDINS) == "1":
-        if installed:
-            remove(list(installed))
-        return f"launch and ros2: {describe_launch()}, as {CHOOSE_STANDINS}=1 asks"
-    if installed == pinned:
+    pinned_versions = python_packages()
+    installed_versions = installed_packages(pinned_versions)
+    if environ.get(STANDINS_VARIABLE) == "1":
+        if installed_versions:
+            remove(list(installed_versions))
+        return f"launch and ros2: {describe_launch()}, as {STANDINS_VARIABLE}=1 asks"
+    if installed_versions == pinned_versions:
         return f"launch and ros2: {describe_launch()}"
     try:
         install(find(), environ)
@@ -148,37 +151,37 @@ def set_up(environ: Mapping[str, str]) -> str:
 
 
 def _clone(sources: Sequence[Source], environ: Mapping[str, str], scratch: Path) -> dict[Source, Path]:
-    """Clone all sources at the same time, once all of them answer; return their folders, in order."""
-    here = Path.cwd()  # a source may be a relative path, and git imports nothing
-    places = {source: source.place(environ) for source in sources}
+    """Check that all sources respond, clone them in parallel, and return the folder of each, in order."""
+    cwd = Path.cwd()  # a source may be a relative path
+    locations = {source: source.location(environ) for source in sources}
     hints = {source: f"point {source.variable} at a clone that this machine reaches" for source in sources}
     _run(
         *(
-            Step(f"reach {place.url}", ["git", "ls-remote", place.url, "HEAD"], hints[source], REACH_SECONDS, here)
-            for source, place in places.items()
+            Step(f"reach {location.url}", ["git", "ls-remote", location.url, "HEAD"], hints[source], REACH_SECONDS, cwd)
+            for source, location in locations.items()
         )
     )
     folders = {source: scratch / source.variable.lower() for source in sources}
-    # --no-local: git reads each object, and compares it with its id, also in a folder of this machine.
+    # With --no-local, git verifies the hash of each object even if it clones a local folder.
     git = ["git", "-c", "advice.detachedHead=false", "clone", "--quiet", "--no-local", "--depth", "1"]
     _run(
         *(
             Step(
-                f"clone {place.url} at {place.tag}",
-                [*git, "--branch", place.tag, place.url, str(folders[source])],
+                f"clone {location.url} at {location.tag}",
+                [*git, "--branch", location.tag, location.url, str(folders[source])],
                 hints[source],
                 CLONE_SECONDS,
-                here,
+                cwd,
             )
-            for source, place in places.items()
+            for source, location in locations.items()
         )
     )
-    for source, place in places.items():
-        (commit,) = _run(Step(f"read {place.url}", ["git", "-C", str(folders[source]), "rev-parse", "HEAD"]))
-        if place.commit not in ("", commit.strip()):
+    for source, location in locations.items():
+        (commit,) = _run(Step(f"read {location.url}", ["git", "-C", str(folders[source]), "rev-parse", "HEAD"]))
+        if location.commit not in ("", commit.strip()):
             raise RealLaunchError(
-                f"refuses tag {place.tag} of {place.url}: it is commit {commit.strip()}, not {place.commit}; "
-                f"{source.variable}={place.url}@{place.tag} takes it as it is"
+                f"refuses tag {location.tag} of {location.url}: it is commit {commit.strip()}, not {location.commit}; "
+                f"{source.variable}={location.url}@{location.tag} takes it as it is"
             )
     return folders
 
@@ -193,7 +196,7 @@ def _package_name(clone: Path, package: str, source: Source) -> str:
 
 
 def _colcon(folders: Mapping[str, Path], ros: RosEnvironment, python: str, scratch: Path) -> Step:
-    """Return the step that builds interface packages, straight into the environment's prefix."""
+    """Return the step that builds interface packages into the environment's prefix."""
     command = [python, "-m", "colcon", "build", "--merge-install", "--install-base", str(ros.prefixes[0])]
     command += ["--base-paths", *map(str, folders.values()), "--cmake-args", "-DBUILD_TESTING=OFF"]
     path = f"{Path(python).parent}{os.pathsep}{os.environ.get('PATH', '')}"
@@ -201,26 +204,26 @@ def _colcon(folders: Mapping[str, Path], ros: RosEnvironment, python: str, scrat
 
 
 def _run(*steps: Step) -> list[str]:
-    """Run steps at the same time, return their outputs; one that fails or takes too long stops all of them."""
-    outputs, started = [], time.monotonic()
-    with ExitStack() as running:
-        processes = [running.enter_context(_process(step)) for step in steps]
+    """Run steps in parallel and return their outputs. If a step fails or times out, the others are stopped."""
+    outputs, start = [], time.monotonic()
+    with ExitStack() as stack:
+        processes = [stack.enter_context(_start_process(step)) for step in steps]
         for step, process in zip(steps, processes, strict=True):
             hint = f"; {step.hint}" if step.hint else ""
             try:
-                output, _ = process.communicate(timeout=max(0.0, started + step.seconds - time.monotonic()))
+                output, _ = process.communicate(timeout=max(0.0, start + step.timeout - time.monotonic()))
             except subprocess.TimeoutExpired:
-                raise RealLaunchError(f"could not {step.what} within {step.seconds:g} s{hint}") from None
+                raise RealLaunchError(f"could not {step.action} within {step.timeout:g} s{hint}") from None
             if process.returncode:
                 lines = output.strip().splitlines()[-15:] or [f"exit status {process.returncode}"]
-                raise RealLaunchError("\n".join([f"could not {step.what}: {lines[-1]}{hint}", *lines[:-1]]))
+                raise RealLaunchError("\n".join([f"could not {step.action}: {lines[-1]}{hint}", *lines[:-1]]))
             outputs.append(output)
     return outputs
 
 
 @contextmanager
-def _process(step: Step) -> Iterator[subprocess.Popen[str]]:
-    """Start a step's command in its own process group, and end the group."""
+def _start_process(step: Step) -> Iterator[subprocess.Popen[str]]:
+    """Start a step's command in its own process group, and kill the group on exit."""
     environ = {**os.environ, "GIT_TERMINAL_PROMPT": "0", **(step.variables or {})}
     process = subprocess.Popen(
         step.command,
@@ -242,13 +245,15 @@ def _process(step: Step) -> Iterator[subprocess.Popen[str]]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Install the real packages and print the result; return an exit code."""
+    """Install the real packages, print the result, and return an exit code."""
     parser = argparse.ArgumentParser(
         prog="real-launch",
         description="Install the real launch, launch_ros and ros2cli on top of the ROS 2 wheels.",
         epilog="Sources: " + ", ".join(f"{source.variable} ({source.url} at {source.tag})" for source in SOURCES),
     )
-    parser.add_argument("--set-up", action="store_true", help=f"where it fails, or {CHOOSE_STANDINS}=1, use stand-ins")
+    parser.add_argument(
+        "--set-up", action="store_true", help=f"where it fails, or {STANDINS_VARIABLE}=1, use stand-ins"
+    )
     options = parser.parse_args(argv)
     try:
         if options.set_up:

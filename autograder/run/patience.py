@@ -1,10 +1,11 @@
-"""Limits how long a submission may keep the grader waiting: one account for all waits of a grading.
+"""Limits how long a submission may keep the grader waiting: one budget for all waits of a grading.
 
 A process runs one grading at a time. Outside a grading, as in a notebook, nothing is counted.
 
-Each wait for a program has a bound of its own. But a program that sleeps a little at each step, or that takes a minute
-to start for each check, stays within all of them. It could hold a grading until its worker sandbox is stopped, and
-there would be no result. So there are two bounds on the sums, and exceeding one is a failure of the student's program.
+Each wait for a program has its own limit. But a program that sleeps a little at each step, or that takes a minute to
+start for each check, exceeds none of these limits. It could delay a grading until the worker sandbox is stopped, and
+then there is no result. So two limits apply to the sums of all waits. Exceeding one is a failure of the student's
+program.
 """
 
 from __future__ import annotations
@@ -15,66 +16,66 @@ import time
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 
-# For answers to steps, without the time for which a busy machine kept the programs from running. A reference's
-# answers take less than 40 s, on a machine with eight times as much to do as it can.
-HELD_SECONDS = 180.0
-RESERVE = 1 / 15  # of the lifetime of a worker sandbox, for the work of the grader after the time is over
+# For the answers to all steps, except the time for which a busy machine kept the programs from running. The answers of
+# a reference take less than 40 s, even on a machine with eight times the load that it can handle.
+MAX_ANSWER_SECONDS = 180.0
+RESERVE = 1 / 15  # share of a worker sandbox's lifetime that the grader still has when the programs' time is over
 
 
-class _Account:
+class _Budget:
     deadline = math.inf
     total = 0.0
-    held = 0.0
+    answer_seconds = 0.0
 
 
 def begin(seconds: float) -> None:
-    """Open the account of a grading that may take `seconds` of real time from now, the reserve included."""
-    _Account.total = seconds * (1 - RESERVE)
-    _Account.deadline = time.monotonic() + _Account.total
-    _Account.held = 0.0
+    """Start the budget of a grading that may take `seconds` of real time from now, including the reserve."""
+    _Budget.total = seconds * (1 - RESERVE)
+    _Budget.deadline = time.monotonic() + _Budget.total
+    _Budget.answer_seconds = 0.0
 
 
-def add_held(seconds: float) -> None:
+def add_answer_time(seconds: float) -> None:
     """Add the time that a program took for its answers."""
-    _Account.held += seconds
+    _Budget.answer_seconds += seconds
 
 
-def is_held(seconds: float = 0.0) -> bool:
-    """Return whether programs, the last one for `seconds`, made the grading wait longer than allowed."""
-    return math.isfinite(_Account.deadline) and _Account.held + seconds > HELD_SECONDS
+def is_too_slow(seconds: float = 0.0) -> bool:
+    """Return whether all answers of programs, and one more after `seconds`, have taken longer than allowed."""
+    return math.isfinite(_Budget.deadline) and _Budget.answer_seconds + seconds > MAX_ANSWER_SECONDS
 
 
 def bounded(seconds: float) -> float:
-    """Return how long a wait may take that may take `seconds` by itself."""
-    return max(0.0, min(seconds, _Account.deadline - time.monotonic()))
+    """Return `seconds`, or the remaining time of the grading if that is shorter."""
+    return max(0.0, min(seconds, _Budget.deadline - time.monotonic()))
 
 
 def is_over() -> bool:
     """Return whether the grading has no time left for programs."""
-    return time.monotonic() > _Account.deadline or is_held()
+    return time.monotonic() > _Budget.deadline or is_too_slow()
 
 
 def is_late() -> bool:
-    """Return whether more than half of the grading's time is over: too little is left for another try."""
-    return _Account.deadline - time.monotonic() < _Account.total / 2
+    """Return whether more than half of the grading's time is over, so that there is no time for another attempt."""
+    return _Budget.deadline - time.monotonic() < _Budget.total / 2
 
 
 def require() -> None:
     """Raise a StudentError if the grading has no time left for programs."""
-    if is_held():
-        raise too_slow()
+    if is_too_slow():
+        raise too_slow_error()
     if is_over():
         sentence = (
-            f"Your programs, tests and launches took {_Account.total / 60:.0f} minutes in all, and the grader waits no "
+            f"Your programs, tests and launches took {_Budget.total / 60:.0f} minutes in all, and the grader waits no "
             "longer: look for a sleep, or for a wait without a deadline."
         )
         raise StudentError(Diagnosis(Kind.TIMED_OUT, sentence))
 
 
-def too_slow() -> StudentError:
+def too_slow_error() -> StudentError:
     """Return the error for programs that made the grading wait longer than allowed."""
     sentence = (
-        f"Your nodes kept the grader waiting for {HELD_SECONDS:.0f} s in all, and it waits no longer: a callback has "
-        "to return at once, without a sleep, a loop that waits or a blocking call."
+        f"Your nodes kept the grader waiting for {MAX_ANSWER_SECONDS:.0f} s in all, and it waits no longer: a callback "
+        "has to return at once, without a sleep, a loop that waits or a blocking call."
     )
     return StudentError(Diagnosis(Kind.TIMED_OUT, sentence))

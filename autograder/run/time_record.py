@@ -1,4 +1,4 @@
-"""Records the time of a grading: which programs ran in real time and why, and the delays by a busy machine."""
+"""Records which programs of a grading ran in real time, and why, and how long a busy machine delayed them."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ LOCKSTEP, REAL = "lockstep", "real"
 
 @dataclass
 class TimeRecord:
-    """The record of one grading. Its workspace carries it to the harnesses; the worker reads it at the end.
+    """The record of one grading. The workspace passes it to the harnesses, and the worker reads it at the end.
 
     Attributes:
-        unsteppable: by what identifies a harness's programs, the reason for each executable that cannot be stepped.
-        real_time: by executable that ran in real time, the reason; empty where the reason is another program's.
+        unsteppable: for the programs of each harness, why executables cannot be stepped.
+        real_time: why each of these executables ran in real time; empty if another program is the reason.
         longest_wait: the longest time in s for which a program or the grader could not run although it was ready.
     """
 
@@ -25,11 +25,11 @@ class TimeRecord:
     longest_wait: float = 0.0
 
     def add_wait(self, seconds: float) -> None:
-        """Keep a waiting time in s if it is the longest."""
+        """Record a waiting time in s if it is the longest so far."""
         self.longest_wait = max(self.longest_wait, seconds)
 
     def add_real_time(self, executables: Iterable[str], reasons: dict[str, str]) -> None:
-        """Note that programs run in real time together; `reasons` are of those that cause it, as in `UNSTEPPABLE`."""
+        """Record that programs run in real time together. For some of them, `reasons` has a key of `UNSTEPPABLE`."""
         for executable in executables:
             self.real_time[executable] = reasons.get(executable) or self.real_time.get(executable, "")
 
@@ -39,11 +39,15 @@ class TimeRecord:
         return REAL if self.explain() else LOCKSTEP
 
     def explain(self) -> str:
-        """Return which programs were not stepped, and why, in sentences; an empty string if all were stepped."""
+        """Return sentences that say which programs were not stepped, and why, or an empty string if all were."""
         sentences = [
-            f"{name} ran in real time, because {UNSTEPPABLE.get(why, 'that was asked for')}."
-            for name, why in sorted(self.real_time.items())
-            if why
+            f"{name} ran in real time, because {UNSTEPPABLE.get(reason, 'that was asked for')}."
+            for name, reason in sorted(self.real_time.items())
+            if reason
         ]
-        beside = ", ".join(sorted(name for name, why in self.real_time.items() if not why))
-        return " ".join([*sentences, f"What runs beside it ran in real time, too: {beside}."] if beside else sentences)
+        other_programs = ", ".join(sorted(name for name, reason in self.real_time.items() if not reason))
+        return " ".join(
+            [*sentences, f"What runs beside it ran in real time, too: {other_programs}."]
+            if other_programs
+            else sentences
+        )

@@ -1,4 +1,4 @@
-"""A built colcon workspace: which packages it has, and how its programs run in a sandbox."""
+"""A built colcon workspace: its packages, and the sandboxes of its programs."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class Workspace:
     """A colcon workspace after `colcon build`, in its isolated layout (`install/<package>/...`)."""
 
     root: Path  # the workspace's folder, with `src` and `install`
-    ros: RosEnvironment  # the ROS 2 that it was built with
+    ros: RosEnvironment  # the ROS 2 installation with which it was built
     scratch: Path  # a writable folder for homes and logs, for sandboxes without their own /tmp
-    domain: int = 0  # the `ROS_DOMAIN_ID` in which its programs and the grader meet
-    # The time records of the harnesses; copies of a workspace share them.
+    domain: int = 0  # the `ROS_DOMAIN_ID` of its programs and the grader
+    # The record to which the harnesses add; copies of a workspace share it.
     time_record: TimeRecord = field(default_factory=TimeRecord, compare=False)
     exchanges: ExchangeLog = field(default_factory=ExchangeLog, compare=False)  # copies share it
 
@@ -44,13 +44,13 @@ class Workspace:
         return tuple(filter(Path.is_dir, sorted(self.install.iterdir()))) if self.install.is_dir() else ()
 
     @contextmanager
-    def apart(self) -> Iterator[Path]:
-        """Give a new folder beside `scratch` and `root`, which none of its programs has ever been able to write to."""
+    def private_folder(self) -> Iterator[Path]:
+        """Create a temporary folder beside `scratch` and `root`. No program of the workspace can ever write to it."""
         with TemporaryDirectory(prefix="apart-", dir=self.scratch.parent) as folder:
             yield Path(folder)
 
     def executable(self, package: str, name: str) -> Path:
-        """Return the path of an installed executable. A StudentError names those that the package does install."""
+        """Return the path of an installed executable. If it does not exist, a StudentError names those that do."""
         folder = self.install / package / "lib" / package
         path = folder / name
         if path.is_file():
@@ -60,8 +60,8 @@ class Workspace:
                 f"The package {package} was not built, so it has no program {name}: read first what the build says."
             )
             raise StudentError(Diagnosis(Kind.MISSING_EXECUTABLE, sentence))
-        there = sorted(entry.name for entry in folder.iterdir() if entry.is_file()) if folder.is_dir() else []
-        installed = f"what it installs is {', '.join(there)}" if there else "it installs none at all"
+        names = sorted(entry.name for entry in folder.iterdir() if entry.is_file()) if folder.is_dir() else []
+        installed = f"what it installs is {', '.join(names)}" if names else "it installs none at all"
         raise StudentError(
             Diagnosis(
                 Kind.MISSING_EXECUTABLE,
@@ -71,7 +71,7 @@ class Workspace:
         )
 
     def environment(self) -> dict[str, str]:
-        """Return the environment of a program of this workspace, as sourcing its `setup.bash` would make it."""
+        """Return the environment of a program of this workspace, as if its `setup.bash` had been sourced."""
         prefixes = self.prefixes()
         libraries = [str(prefix / "lib") for prefix in prefixes]
         modules = [str(path) for path in map(site_packages, prefixes) if path.is_dir()]
@@ -91,7 +91,7 @@ class Workspace:
         }
 
     def sandbox(self, limits: Limits = NODE) -> Sandbox:
-        """Describe the sandbox of a node of this workspace: it reads the install space and reaches peers over DDS."""
+        """Return a sandbox for a node of this workspace. It can read the install space and reach peers over DDS."""
         installed = (Mount(self.install),) if self.install.is_dir() else ()
         system = tuple(Mount(prefix) for prefix in self.ros.prefixes if self.ros.kind == "sourced")
         return Sandbox(

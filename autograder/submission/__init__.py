@@ -1,1 +1,1 @@
-"""Submissions: reads them within bounds, finds their ROS packages, and names unfinished files."""
+"""Reads submissions within limits, finds their ROS packages, and names unfinished files."""

@@ -1,4 +1,4 @@
-"""Finds files of an exercise that hold the stub of a release: their student has not written them yet."""
+"""Finds the files of an exercise that still contain the released stub."""
 
 from __future__ import annotations
 
@@ -9,46 +9,49 @@ from pathlib import Path
 from autograder.diagnosis import Diagnosis, Kind
 
 STILL_TO_BE_WRITTEN = "this part of the exercise is still to be written"
-# The text in a release in place of an answer. It is valid Python in any function. A node that runs it ends with this
-# sentence, which tells the student what to do.
+# The text that replaces an answer in a release. It is valid Python in any function. A node that runs it ends with the
+# sentence above, which tells the student what to do.
 CODE_STUB = f"# YOUR CODE HERE\nraise NotImplementedError('{STILL_TO_BE_WRITTEN}')"
 TEXT_STUB = "YOUR ANSWER HERE"
-MAX_BYTES = 256 * 1024  # no file of an exercise is longer
+MAX_BYTES = 256 * 1024  # more than any file of an exercise has
 
 # Files that colcon and rosidl read to build a package. A stub in any other file does not prevent the build.
-_BUILT_FROM = ("package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/*.msg", "srv/*.srv", "action/*.action")
+_BUILD_FILES = ("package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "msg/*.msg", "srv/*.srv", "action/*.action")
 _DEPENDENCY = re.compile(r"<(?:\w+_)?depend\b[^<>]*>\s*(\w[\w-]{0,99})(?![\w.-])", re.ASCII)
 
 
 def explain(diagnosis: Diagnosis, source: Path, *packages: str) -> Diagnosis:
-    """Return why packages in `source` were not built: a file that is still to be written, or else the diagnosis.
+    """Return a diagnosis that names unfinished files as the reason why packages were not built, or else `diagnosis`.
 
-    The packages of `source` that these depend on are looked at, too.
+    Args:
+        diagnosis: the diagnosis of the build.
+        source: the folder of the packages.
+        packages: the packages that were not built. Their dependencies in `source` are searched as well.
     """
     stubs = dict(_stubs(source, packages))
     if not stubs:
         return diagnosis
     paths = list(stubs)
-    named = f"{paths[0]} is" if len(paths) == 1 else f"{', '.join(paths[:-1])} and {paths[-1]} are"
+    subject = f"{paths[0]} is" if len(paths) == 1 else f"{', '.join(paths[:-1])} and {paths[-1]} are"
     detail = "\n".join(f"{path}, {line}" for path, line in stubs.items())
     return Diagnosis(
         Kind.UNFINISHED,
-        f"{named} still to be written: replace the line raise NotImplementedError(...) with yours.",
+        f"{subject} still to be written: replace the line raise NotImplementedError(...) with yours.",
         detail,
     )
 
 
 def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """Yield each file that holds a stub, such as `src/robot/setup.py`, with the first one's line."""
-    seen: set[str] = set()
+    """Yield the path of each file with a stub, and its first line with one: `src/robot/setup.py`, `line 9: ...`."""
+    visited: set[str] = set()
     pending = [*reversed(packages)]
     while pending:
         name = pending.pop()
-        if name in seen:
+        if name in visited:
             continue
-        seen.add(name)
+        visited.add(name)
         pending += _DEPENDENCY.findall(_read(source / name / "package.xml"))
-        for pattern in _BUILT_FROM:
+        for pattern in _BUILD_FILES:
             for path in sorted((source / name).glob(pattern)):
                 lines = enumerate(_read(path).splitlines(), 1)
                 stub_lines = [f"line {number}: {line.strip()}" for number, line in lines if STILL_TO_BE_WRITTEN in line]
@@ -57,7 +60,7 @@ def _stubs(source: Path, packages: tuple[str, ...]) -> Iterator[tuple[str, str]]
 
 
 def _read(path: Path) -> str:
-    """Return the text of a regular file up to `MAX_BYTES`, or an empty string."""
+    """Return the first `MAX_BYTES` of a regular file as text, or an empty string if the path is anything else."""
     if path.is_symlink() or not path.is_file():
         return ""
     with path.open("rb") as file:

@@ -15,16 +15,17 @@ from autograder.submission.reading import reading
 
 MANIFEST = "package.xml"
 MAX_MANIFEST = 64 * 1024  # bytes
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}")  # names that colcon accepts, and that can be the name of a folder
-IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")  # in a folder without packages below it
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}")  # a name that colcon accepts, and that a folder can have
+# Files that mark a folder in which colcon does not look for packages.
+IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 COLCON_PKG = "colcon.pkg"
-MAX_PACKAGES = 50  # more than a course's chapters, and few enough for the command line of colcon
+MAX_PACKAGES = 50  # more than a course has, and few enough for the command line of colcon
 DEPENDS = ("depend", "build_depend", "build_export_depend", "exec_depend", "buildtool_depend")
 
 
 @dataclass(frozen=True)
 class Package:
-    """A package's folder, and the content of its package.xml. `probes.manifest` validates that, this does not."""
+    """A package's folder, and the content of its package.xml. `autograder.probes.manifest` validates it."""
 
     folder: Path
     name: str
@@ -32,35 +33,38 @@ class Package:
     groups: frozenset[str]
 
 
-def read_package(manifest: Path, called: str = "") -> Package:
-    """Read the package of a package.xml, which a sentence names as `called`; a StudentError says why it cannot."""
-    where = called or f"{manifest.parent.name}/{MANIFEST}"
-    with reading(where, Kind.HALF_WRITTEN_PACKAGE, "Correct it for colcon."):
+def read_package(manifest: Path, label: str = "") -> Package:
+    """Read the package that a package.xml describes. Raises a StudentError that calls the file `label`."""
+    label = label or f"{manifest.parent.name}/{MANIFEST}"
+    with reading(label, Kind.HALF_WRITTEN_PACKAGE, "Correct it for colcon."):
         if manifest.stat().st_size > MAX_MANIFEST:
-            raise _wrong(f"{where} is larger than {MAX_MANIFEST // 1024} KiB: shorten it.")
+            raise _manifest_error(f"{label} is larger than {MAX_MANIFEST // 1024} KiB: shorten it.")
         data = manifest.read_bytes()
-        if b"<!DOCTYPE" in data.replace(b"\0", b""):  # also in UTF-16; one can make 8 MB of a small file
-            raise _wrong(f"{where} has a <!DOCTYPE>, which no manifest needs: take it out.")
+        # UTF-16 has null bytes. The entities of a document type can expand a small file to 8 MB.
+        if b"<!DOCTYPE" in data.replace(b"\0", b""):
+            raise _manifest_error(f"{label} has a <!DOCTYPE>, which no manifest needs: take it out.")
         try:
             root = ET.fromstring(data)
         except ET.ParseError as error:
-            raise _wrong(f"{where} is not well-formed XML ({error}): correct that line for colcon.") from None
+            raise _manifest_error(f"{label} is not well-formed XML ({error}): correct that line for colcon.") from None
         name = root.findtext("name", "").strip()
         if not NAME.fullmatch(name):
-            raise _wrong(f"{where} has the <name> {name[:80]!r}, which is not a package's name: use a-z, 0-9 and _.")
+            raise _manifest_error(
+                f"{label} has the <name> {name[:80]!r}, which is not a package's name: use a-z, 0-9 and _."
+            )
         return Package(
             folder=manifest.parent,
             name=name,
-            depends=tuple(each.text.strip() for tag in DEPENDS for each in root.iter(tag) if each.text),
-            groups=frozenset((each.text or "").strip() for each in root.iter("member_of_group")),
+            depends=tuple(element.text.strip() for tag in DEPENDS for element in root.iter(tag) if element.text),
+            groups=frozenset((element.text or "").strip() for element in root.iter("member_of_group")),
         )
 
 
 def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
-    """Read the packages below a folder, by their names; those that cannot be read are errors, by their folders.
+    """Return the valid packages below a folder by name, and the errors of the invalid ones by folder.
 
-    It looks where colcon looks: not in hidden folders, not below a marker such as COLCON_IGNORE, and not for packages
-    in packages. `building.colcon` gives colcon these folders, so that the built packages are the judged ones.
+    It looks where colcon looks: not in hidden folders, not below a marker such as COLCON_IGNORE, and not inside other
+    packages. `building.colcon` passes these folders to colcon, so that it builds the packages that are graded.
 
     Raises:
         StudentError: two packages have the same name, or the tree has too many.
@@ -68,25 +72,29 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
     packages: dict[str, Package] = {}
     broken: dict[Path, str] = {}
     for folder in _package_folders(source):
-        where = f"src/{(folder / MANIFEST).relative_to(source)}"
+        label = f"src/{(folder / MANIFEST).relative_to(source)}"
         try:
-            package = read_package(folder / MANIFEST, where)
-            if os.path.lexists(folder / COLCON_PKG):  # it can give a package another name than its manifest
-                raise _wrong(f"{where} has a {COLCON_PKG} beside it, which no package of ROS needs: take it out.")
+            package = read_package(folder / MANIFEST, label)
+            if os.path.lexists(folder / COLCON_PKG):  # it can override the name in the manifest
+                raise _manifest_error(
+                    f"{label} has a {COLCON_PKG} beside it, which no package of ROS needs: take it out."
+                )
         except StudentError as error:
             broken[folder] = error.diagnosis.sentence
             continue
         if (other := packages.get(package.name)) is not None:
-            both = " and ".join(f"src/{path.relative_to(source)}" for path in (other.folder, folder))
-            raise _wrong(f"{both} are two packages with the name {package.name}: colcon builds neither. Take one out.")
+            paths = " and ".join(f"src/{path.relative_to(source)}" for path in (other.folder, folder))
+            raise _manifest_error(
+                f"{paths} are two packages with the name {package.name}: colcon builds neither. Take one out."
+            )
         packages[package.name] = package
         if len(packages) > MAX_PACKAGES:
-            raise _wrong(f"src holds more than {MAX_PACKAGES} packages: take out those that are not yours.")
+            raise _manifest_error(f"src holds more than {MAX_PACKAGES} packages: take out those that are not yours.")
     return packages, broken
 
 
 def find_packages(source: Path) -> tuple[dict[str, Path], dict[Path, str]]:
-    """Return the folders of the packages below a folder, and the errors, as `read_packages` does."""
+    """Return the folders of the valid packages by name, and the errors as `read_packages` does."""
     packages, broken = read_packages(source)
     return {name: package.folder for name, package in packages.items()}, broken
 
@@ -96,7 +104,7 @@ def _package_folders(source: Path) -> Iterator[Path]:
         folder = Path(here)
         if any(os.path.lexists(folder / marker) for marker in IGNORED):
             folders.clear()
-        # To read a named pipe, which a set-up script may have made, would never end.
+        # Reading a named pipe, which a set-up script may have created, would block forever.
         elif MANIFEST in files and not (folder / MANIFEST).is_symlink() and (folder / MANIFEST).is_file():
             folders.clear()
             yield folder
@@ -104,5 +112,5 @@ def _package_folders(source: Path) -> Iterator[Path]:
             folders[:] = sorted(name for name in folders if not name.startswith("."))
 
 
-def _wrong(sentence: str) -> StudentError:
+def _manifest_error(sentence: str) -> StudentError:
     return StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))

@@ -1,15 +1,15 @@
 """The contract of a chapter: the requirements that its notebook states, each with an id.
 
-A requirement is written where the student reads it. The metadata of its cell name it, or a part of it, word for word. A
-row of a table is named with its bars, and a wrapped line as one line:
+A requirement is written where the student reads it. The metadata of its cell quote it, or a part of it, word for word.
+A row of a table is quoted with its bars, and a sentence on several lines as one line:
 
     {"course": {"contract": {"stale-scan": "| the newest scan arrived more than 0.5 s ago, in ROS time | 0 | 0 |",
                              "keeps-pace": "always"},
                 "unchecked": {"keeps-pace": "why no check can cover it"},
                 "explains": ["- a row, a bullet or a docstring that requires nothing"]}}
 
-The same id in two cells is one requirement that is stated twice. A list of texts is a requirement in several sentences.
-A check names the ids that it covers. Feedback quotes the whole sentence or row, as it is read
+If two cells use the same id, they state the same requirement. A list of texts is a requirement that consists of several
+sentences. A check names the ids that it covers. Feedback quotes the whole sentence or row, as it looks on the page
 (`autograder.suite.quotation`).
 """
 
@@ -31,7 +31,7 @@ class Requirement:
     Attributes:
         id: its name in the chapter.
         text: the whole sentence, or the row of a table, as a student reads it.
-        unchecked: why no check covers it. It is empty if checks do.
+        unchecked: why no check covers it; empty if one does.
     """
 
     id: str
@@ -40,7 +40,7 @@ class Requirement:
 
 
 def contract(assignment: str) -> dict[str, Requirement]:
-    """Return a chapter's requirements by their ids, cell by cell.
+    """Return a chapter's requirements by their ids, in the order of the cells.
 
     Raises:
         UsageError: the chapter does not exist.
@@ -50,19 +50,20 @@ def contract(assignment: str) -> dict[str, Requirement]:
 
 
 def counts(assignments: Iterable[str]) -> dict[str, int]:
-    """Return how many requirements chapters have, and how many of them no check covers."""
-    every = [requirement for name in assignments for requirement in contract(name).values()]
-    return {"contract_sentences": len(every), "contract_unchecked": sum(bool(each.unchecked) for each in every)}
+    """Count the requirements of some chapters, and those that no check covers."""
+    all_requirements = [requirement for name in assignments for requirement in contract(name).values()]
+    unchecked = sum(bool(requirement.unchecked) for requirement in all_requirements)
+    return {"contract_sentences": len(all_requirements), "contract_unchecked": unchecked}
 
 
 def requirements(cells: Iterable[Mapping[str, Any]]) -> dict[str, Requirement]:
-    """Return the requirements that the metadata of a notebook's cells name. The first cell of an id counts."""
+    """Return the requirements in the metadata of a notebook's cells. If two cells use the same id, the first counts."""
     by_id: dict[str, Requirement] = {}
     for cell in cells:
         course = cell["metadata"].get("course", {})
         for name, texts in course.get("contract", {}).items():
-            named = [texts] if isinstance(texts, str) else texts
-            whole = dict.fromkeys(quote(cell, text) or text for text in named)
+            parts = [texts] if isinstance(texts, str) else texts
+            quotations = dict.fromkeys(quote(cell, text) or text for text in parts)
             unchecked = course.get("unchecked", {}).get(name, "")
-            by_id.setdefault(name, Requirement(name, " ".join(whole), unchecked))
+            by_id.setdefault(name, Requirement(name, " ".join(quotations), unchecked))
     return by_id

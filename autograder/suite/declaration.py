@@ -1,6 +1,6 @@
-"""The declaration of checks: one function, one behaviour, and the sentence that the student reads.
+"""Declares checks. A check is a function that tests one behaviour, with the sentence that the student reads.
 
-A suite is a pytest module. Each of its tests is a check, in the group of checks that the module names:
+A suite consists of pytest modules. Each test in them is a check, and belongs to the group that its module names:
 
     check = group("reaction")
 
@@ -12,13 +12,13 @@ A suite is a pytest module. Each of its tests is a check, in the group of checks
         ...
         expect(turned, "it kept driving straight at a wall 0.6 m ahead")
 
-`check` itself takes the group as an argument, for a module whose checks belong to several. `check_each_row` declares a
-check for every row of a table. A check in a folder called `visible` is visible, any other is hidden.
+`check` itself takes the group as an argument, for modules whose checks belong to several groups. `check_each_row`
+declares a check for every row of a table. A check in a folder called `visible` is visible, any other is hidden.
 
 A check passes, fails (with a fraction of its points) or is not checked, because a check that it `needs` did not pass:
-for example, no program starts, or a topic does not exist. A check `after` another one runs in any case and judges its
-own requirement. If both fail, feedback shows it under the other one. Any other exception is a failure of the grader,
-never a zero for the student.
+for example, no program starts, or a topic does not exist. A check `after` another one runs in any case and tests its
+own requirement. If both fail, feedback shows it under the other one. An unexpected exception is a failure of the
+grader, and never gives a student zero points.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Visibility(str, Enum):
 
 
 class Outcome(str, Enum):
-    """How a check ended."""
+    """The outcome of a check."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -54,24 +54,24 @@ class Outcome(str, Enum):
 
     @property
     def text(self) -> str:
-        """The outcome as people read it, in feedback and in notebooks."""
+        """The outcome in words, for feedback and notebooks."""
         return self.value.replace("_", " ")
 
 
 @dataclass(frozen=True)
 class Check:
-    """A check's contract, taken from its function and the `check` decorator.
+    """What a check's function and its `check` decorator declare.
 
     Attributes:
         id: the function's name without `test_`; unique in its suite.
         title: the first paragraph of its docstring.
-        points: its worth, above 0.
-        group: the locked grade cell that it counts for.
+        points: the points that it can earn, above 0.
+        group: the locked grade cell to which its points belong.
         hints: shown one after the other when it fails.
         doc: a page to read, or None.
-        needs: ids of checks without which this one cannot be run; it is not checked unless all of them passed.
+        needs: ids of checks without which this one cannot be run; it runs only if all of them passed.
         covers: ids of the requirements that it covers; see `autograder.suite.contract`.
-        after: ids of checks whose failure is likely to be the cause if this one fails, too; it is run in any case.
+        after: ids of checks whose failure is a likely cause if this one also fails; it runs in any case.
     """
 
     id: str
@@ -92,11 +92,11 @@ class Check:
 
 
 class FractionError(GraderError, ValueError):
-    """A failed check's fraction is none: the check is wrong, or did not expect the data that it worked it out of."""
+    """A failed check's fraction is invalid: the check is wrong, or did not expect the data that it used."""
 
 
 class CheckFailed(AutograderError):
-    """A check's verdict "failed": a sentence for the student and the fraction of the points that was reached.
+    """A check's verdict "failed": a sentence for the student and the fraction of the points that the check earns.
 
     `hints` are the hints for this failure, or None for those of the check.
     """
@@ -111,7 +111,7 @@ class CheckFailed(AutograderError):
 
 
 class Declare(Protocol):
-    """Declares a function a check of one group; see `check`."""
+    """Declares functions as checks of one group; see `check`."""
 
     def __call__(
         self,
@@ -126,10 +126,9 @@ class Declare(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class CheckRow:
-    """A row of a table of checks with a common body. A subclass adds the fields that the body needs.
+    """A row in a table of checks that share a body. A subclass adds the fields that the body needs.
 
-    Attributes:
-        id: the check's, as in `Check`; so are the others.
+    `Check` explains the attributes.
     """
 
     id: str
@@ -152,10 +151,10 @@ def check(
     after: tuple[str, ...] = (),
     doc: str | None = None,
 ) -> Callable[[F], F]:
-    """Declare a pytest function as a check. `Check` explains the arguments. A single requirement needs no tuple.
+    """Declare a pytest function as a check. `Check` explains the arguments. `covers` may be a single id.
 
     Raises:
-        GraderError: the function's name, docstring or points break the contract of a check.
+        GraderError: the function's name, docstring or points are not valid for a check.
     """
 
     def declare(function: F) -> F:
@@ -167,13 +166,13 @@ def check(
             raise GraderError(f"check {name!r}: it needs a docstring, the sentence that the student reads")
         if not (math.isfinite(points) and points > 0):
             raise GraderError(f"check {name!r}: points must be above 0, not {points!r}")
-        visible = Path(inspect.unwrap(function).__code__.co_filename).parent.name == Visibility.VISIBLE.value
-        visibility = Visibility.VISIBLE if visible else Visibility.HIDDEN
+        is_visible = Path(inspect.unwrap(function).__code__.co_filename).parent.name == Visibility.VISIBLE.value
+        visibility = Visibility.VISIBLE if is_visible else Visibility.HIDDEN
         hints = getattr(function, "__hints__", ())
-        covered = (covers,) if isinstance(covers, str) else covers
+        requirement_ids = (covers,) if isinstance(covers, str) else covers
         id = name.removeprefix(PREFIX)
-        declared = Check(id, title, float(points), group, visibility, hints, doc, needs, covered, after)
-        function.__check__ = declared  # type: ignore[attr-defined]
+        new_check = Check(id, title, float(points), group, visibility, hints, doc, needs, requirement_ids, after)
+        function.__check__ = new_check  # type: ignore[attr-defined]
         return function
 
     return declare
@@ -200,7 +199,7 @@ def hint(*texts: str) -> Callable[[F], F]:
     """Add hints to the function of a check, before those of the `hint` below it. Use it below `check`.
 
     Raises:
-        GraderError: it is used above `check`, which would not see it.
+        GraderError: it is used above `check`, which would ignore the hints.
     """
 
     def add(function: F) -> F:
@@ -215,14 +214,14 @@ def hint(*texts: str) -> Callable[[F], F]:
 def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
     """Declare a check for each row of a table, as a function `test_ID` in the module of the body.
 
-    The body takes a row, and then fixtures.
+    The body is a function whose first argument is a row. Its other arguments are fixtures.
 
     Args:
         check: declares each check, with the row's points and page.
-        rows: the table.
+        rows: the rows of the table.
 
     Raises:
-        GraderError: pytest would take the body itself for a test.
+        GraderError: pytest would collect the body itself as a test.
     """
 
     def declare_each(body: F) -> F:
@@ -237,7 +236,7 @@ def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
 
 
 def expect(condition: bool, message: str, *, fraction: float = 0.0, hints: tuple[str, ...] | None = None) -> None:
-    """Fail the check with `message` unless `condition` holds, and with `hints` if those of the check do not fit.
+    """Fail the check with `message` unless `condition` holds. `hints` replace those of the check.
 
     Raises:
         CheckFailed: it does not hold.

@@ -1,11 +1,11 @@
 """The version of a suite, and a digest of all files that a grading reads.
 
 Two gradings of a submission with the same seed and the same version give the same mark. `autograder grade --resume`
-relies on this. A version consists of a digest of the chapter's files and of the files that its checks declare to read,
-and `GRADER_VERSION` for everything else.
+relies on this. A version consists of a digest of the chapter's files and of the files that its suite names in `READS`,
+and of `GRADER_VERSION` for everything else.
 
-The digest of all files changes with every comment. It is for those who need more than the same mark: the verification
-of the grader, and the machines of a cluster.
+The digest of all files changes with every comment. The verification of the grader and the machines of a cluster, which
+need more than the same mark, use it.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from pathlib import Path
 from autograder import course_paths
 
 # The version of the grader and the simulator, which the checks of all chapters use. Raise it by one with each change
-# by which a submission can get another mark with the same seed, or another reason for it: see CONTRIBUTING.md. Marks of
-# another version are graded again by `--resume`.
-GRADER_VERSION = 5
+# that can give a submission another mark with the same seed, or another reason for its mark: see CONTRIBUTING.md.
+# `--resume` grades submissions again whose results have another version.
+GRADER_VERSION = 6
 
 # Parts of the autograder that no grading reads.
 NOT_READ = frozenset(
@@ -29,7 +29,7 @@ NOT_READ = frozenset(
         *("report", "result/causes.py"),
     }
 )
-# In a chapter's checks, for verification only.
+# Files in a chapter's checks that only the verification reads.
 VERIFICATION = frozenset(
     {"attack_payloads.py", "attacks.py", "mutants.snapshot.yaml", "mutants.yaml", "survivors.yaml", "variants"}
 )
@@ -41,28 +41,30 @@ def version(assignment: str, reads: Iterable[str] = ()) -> str:
 
     Args:
         assignment: name of the assignment.
-        reads: files and folders that its checks read beside their own, as paths in the course's folder.
+        reads: files and folders that its checks read besides their own, as paths in the course's folder.
     """
     return f"{GRADER_VERSION}-{_digest(chapter_files(assignment, reads))}"
 
 
 def digest(assignment: str, reads: Iterable[str] = ()) -> str:
-    """Return a digest of all files that a grading reads, 12 hexadecimal digits; the arguments are as in `version`."""
+    """Return a digest of all files that a grading reads: 12 hexadecimal digits. The arguments are as in `version`."""
     return _digest(files(assignment, reads))
 
 
 def files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
-    """Return the sorted paths of all files that a grading reads; the arguments are as in `version`."""
-    home = course_paths.ROOT
-    shared = _below(home, (home / name for name in ("autograder", "sim", "assets/worlds")))
-    read = (path for path in shared if _is_read(path.relative_to(home).parts))
+    """Return the sorted paths of all files that a grading reads. The arguments are as in `version`."""
+    root = course_paths.ROOT
+    shared = _files_below(root, (root / name for name in ("autograder", "sim", "assets/worlds")))
+    read_by_all = (path for path in shared if _is_read(path.relative_to(root).parts))
     course = course_paths.course()
-    return sorted({*read, *_below(course.root, (course.root / course.worlds,)), *chapter_files(assignment, reads)})
+    return sorted(
+        {*read_by_all, *_files_below(course.root, (course.root / course.worlds,)), *chapter_files(assignment, reads)}
+    )
 
 
 def chapter_files(assignment: str, reads: Iterable[str] = ()) -> list[Path]:
-    """Return the sorted paths of a chapter's files and of the files that its checks read; arguments as in `version`."""
-    return sorted(_below(course_paths.course().root, places(assignment, reads)))
+    """Return the sorted paths of all files that only a chapter's gradings read. The arguments are as in `version`."""
+    return sorted(_files_below(course_paths.course().root, suite_paths(assignment, reads)))
 
 
 def _digest(paths: Iterable[Path]) -> str:
@@ -76,58 +78,68 @@ def _digest(paths: Iterable[Path]) -> str:
     return sha256.hexdigest()[:12]
 
 
-def places(assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] = ("visible", "hidden")) -> list[Path]:
+def suite_paths(
+    assignment: str, reads: Iterable[str] = (), *, parts: Iterable[str] = ("visible", "hidden")
+) -> list[Path]:
     """Return the files and folders of the course that only the gradings of one assignment read.
 
-    They are its checks without the files for verification, the modules of other chapters' checks that those import, its
-    notebook, the packages that it gives to students, and the files that its suite declares to read.
+    They are its checks without the files for verification, the modules of other chapters' checks that its checks
+    import, its notebook, the packages that it gives to students, and the files that its suite names in `READS`.
 
     Args:
         assignment: name of the assignment.
-        reads: files and folders that its checks read beside their own, as paths in the course's folder.
-        parts: which of its suites.
+        reads: files and folders that its checks read besides their own, as paths in the course's folder.
+        parts: the suites to include.
     """
     course = course_paths.course()
     checks, chapter = course.root / course.checks, course.root / course.chapters / assignment
     suite = checks / f"ch{assignment}"
-    unread = VERIFICATION | {"__pycache__"} | {"visible", "hidden"}.difference(parts)
-    own = [path for path in suite.iterdir() if path.name not in unread] if suite.is_dir() else []
-    given = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src")
-    named = [*own, *_imported(own, checks), *given, *(course.root / name for name in reads)]
-    return sorted({path for path in named if path.exists()})
+    unread_names = VERIFICATION | {"__pycache__"} | {"visible", "hidden"}.difference(parts)
+    own_paths = [path for path in suite.iterdir() if path.name not in unread_names] if suite.is_dir() else []
+    released_paths = (chapter / f"{assignment}.ipynb", chapter / "ws" / "src")
+    candidates = [
+        *own_paths,
+        *_imported_modules(own_paths, checks),
+        *released_paths,
+        *(course.root / name for name in reads),
+    ]
+    return sorted({path for path in candidates if path.exists()})
 
 
-def _below(root: Path, tops: Iterable[Path]) -> Iterator[Path]:
-    """Yield the files at and below some paths, without those that tools left there."""
-    for path in (path for top in tops for path in (top, *top.rglob("*")) if path.is_file()):
+def _files_below(root: Path, top_paths: Iterable[Path]) -> Iterator[Path]:
+    """Yield the files at or below some paths, except those that tools create."""
+    for path in (path for top in top_paths for path in (top, *top.rglob("*")) if path.is_file()):
         parts = path.relative_to(root).parts
         if "__pycache__" not in parts and not any(part.startswith(".") for part in parts):
             yield path
 
 
-def _imported(own: Iterable[Path], checks: Path) -> set[Path]:
-    """Return the modules of other chapters' checks that some checks import, and those that these import."""
-    pending, modules = [path for top in own for path in (top, *top.rglob("*")) if path.suffix == ".py"], set[Path]()
+def _imported_modules(top_paths: Iterable[Path], checks: Path) -> set[Path]:
+    """Return the modules of other chapters' checks that these checks import, directly or indirectly."""
+    pending, modules = (
+        [path for top in top_paths for path in (top, *top.rglob("*")) if path.suffix == ".py"],
+        set[Path](),
+    )
     while pending:
         for name, names in CHECKS_IMPORT.findall(pending.pop().read_text(encoding="utf-8")):
-            dotted = [name, *(f"{name}.{each}" for each in re.findall(r"\w+", names))]
-            for path in (path for each in dotted for path in _modules(each, checks)):
-                if path not in modules and not any(path == top or top in path.parents for top in own):
+            module_name = [name, *(f"{name}.{imported}" for imported in re.findall(r"\w+", names))]
+            for path in (path for module in module_name for path in _modules(module, checks)):
+                if path not in modules and not any(path == top or top in path.parents for top in top_paths):
                     modules.add(path)
                     pending.append(path)
     return modules
 
 
-def _modules(dotted: str, checks: Path) -> Iterator[Path]:
+def _modules(module_name: str, checks: Path) -> Iterator[Path]:
     """Yield the files of a module of the checks and of the packages around it."""
-    parts = dotted.strip(".").split(".")
+    parts = module_name.strip(".").split(".")
     for count in range(1, len(parts) + 1):
         path = checks.joinpath(*parts[:count])
         yield from filter(Path.is_file, (path / "__init__.py", path.with_suffix(".py")))
 
 
 def _is_read(parts: tuple[str, ...]) -> bool:
-    """Return whether each grading reads a file of the autograder or the simulator."""
+    """Return whether every grading reads a file of the autograder or the simulator."""
     if parts[:2] == ("autograder", "checks"):
         return len(parts) == 3  # the package itself; the chapters are in folders
     return parts[0] != "autograder" or not NOT_READ & {parts[1], "/".join(parts[1:3])}

@@ -1,7 +1,7 @@
-"""The sentences of a notebook's cell as a student reads them: rendered, and whole.
+"""Finds the sentence in a notebook's cell that contains a given text, and renders it as a student reads it.
 
-Authors name a requirement by its Markdown, or by a part of it. `quote` returns the text on the page: the row of the
-table, or the whole sentence, without markup.
+Authors quote the Markdown of a requirement, or a part of it. `quote` returns the text as it is on the page: the whole
+row of the table, or the whole sentence, without markup.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from typing import Any
 
 import mistune
 
-MARK = "\ue000"  # before code and emphasis, with which a sentence may begin in lower case
-_END = r"[.!?][)\"'”]*(?<!\.\.)"  # of a sentence; three dots are none
-_ENDED = re.compile(rf"{_END}$")
-_NEXT = re.compile(rf"{_END}\s+(?![a-z])")  # between two sentences
+MARK = "\ue000"  # marks the start of code or emphasis, which may begin a sentence in lower case
+_SENTENCE_END = r"[.!?][)\"'”]*(?<!\.\.)"  # end of a sentence, not an ellipsis
+_AT_SENTENCE_END = re.compile(rf"{_SENTENCE_END}$")
+_SENTENCE_GAP = re.compile(rf"{_SENTENCE_END}\s+(?![a-z])")  # the gap between two sentences
 _BAR = re.compile(r"(?<!\\)\|")
 
 Token = Mapping[str, Any]
@@ -31,8 +31,8 @@ class Row:
 
     Attributes:
         head: the names of the columns in the head of the table.
-        cells: the text of the columns, with markup.
-        label: the first cell; where it is empty, that of the row above.
+        cells: its text in each column, with marks.
+        label: the first cell; if it is empty, the label of the row above.
     """
 
     head: tuple[str, ...]
@@ -41,54 +41,58 @@ class Row:
 
     @property
     def text(self) -> str:
-        """The row in words. The head names the columns after the first, unless the table has only one."""
+        """The row in words: its label and the other cells. If there are several, their columns' names precede them."""
         heads = self.head[1:] if len(self.cells) > 2 else ("",)
         values = (f"{head} {cell}".strip() for head, cell in zip(heads, self.cells[1:], strict=False) if cell)
-        return _unmarked(": ".join(part for part in (self.label, ", ".join(values)) if part))
+        return _without_marks(": ".join(part for part in (self.label, ", ".join(values)) if part))
 
 
 def quote(cell: Mapping[str, Any], text: str) -> str | None:
-    """Return the row or the sentence of a notebook's cell that holds `text`, as it is read; None if none does.
+    """Return the row or the sentence of a notebook's cell that contains `text`, as the page shows it, or None.
 
     Args:
-        cell: the cell. Markdown is rendered, code is read unchanged.
+        cell: the cell. Markdown is rendered, code is not.
         text: a part of the cell's source: a row with its bars, a bullet, or a sentence or a part of one.
     """
     source = "".join(cell["source"])
     pieces: Iterable[str | Row]
     if cell["cell_type"] != "markdown":
-        sought, pieces = " ".join(text.split()), _code_pieces(source)
+        query, pieces = " ".join(text.split()), _code_pieces(source)
     elif text.startswith("|"):
         columns = [
-            _unmarked(_inline(column)) for column in _BAR.split(text.strip().removeprefix("|").removesuffix("|"))
+            _without_marks(_inline(column)) for column in _BAR.split(text.strip().removeprefix("|").removesuffix("|"))
         ]
         rows = (piece for piece in _pieces(source) if isinstance(piece, Row))
-        return next((row.text for row in rows if [_unmarked(each) for each in row.cells] == columns), None)
+        return next((row.text for row in rows if [_without_marks(column) for column in row.cells] == columns), None)
     else:
-        sought, pieces = _unmarked(_inline(text.removeprefix("- "))), _pieces(source)
-    return next((quoted for piece in pieces if (quoted := _quote_of(piece, sought)) is not None), None)
+        query, pieces = _without_marks(_inline(text.removeprefix("- "))), _pieces(source)
+    return next((quoted for piece in pieces if (quoted := _quote_of(piece, query)) is not None), None)
 
 
-def _quote_of(piece: str | Row, sought: str) -> str | None:
-    """Return a row that holds a text, or the sentences of a paragraph that do; None if the text is not there."""
+def _quote_of(piece: str | Row, query: str) -> str | None:
+    """Return the text of a row, or the sentences of a paragraph, that contain `query`; None if it does not occur."""
     if isinstance(piece, Row):
-        return piece.text if any(sought in _unmarked(cell) for cell in piece.cells) else None
-    plain = _unmarked(piece)
-    start = plain.find(sought)
+        return piece.text if any(query in _without_marks(cell) for cell in piece.cells) else None
+    plain = _without_marks(piece)
+    start = plain.find(query)
     if start < 0:
         return None
-    end = start + len(sought)
-    borders = [0, *(len(_unmarked(piece[: match.end()])) for match in _NEXT.finditer(piece)), len(plain)]
-    if not _ENDED.search(plain[:start].rstrip()):
-        start = max(border for border in borders if border <= start)
-    if not _ENDED.search(sought):
-        end = min(border for border in borders if border >= end)
+    end = start + len(query)
+    boundaries = [
+        0,
+        *(len(_without_marks(piece[: match.end()])) for match in _SENTENCE_GAP.finditer(piece)),
+        len(plain),
+    ]
+    if not _AT_SENTENCE_END.search(plain[:start].rstrip()):
+        start = max(boundary for boundary in boundaries if boundary <= start)
+    if not _AT_SENTENCE_END.search(query):
+        end = min(boundary for boundary in boundaries if boundary >= end)
     return plain[start:end].strip()
 
 
 @cache
 def _pieces(source: str) -> tuple[str | Row, ...]:
-    """Return the paragraphs, bullets and rows of Markdown, with marks."""
+    """Return the paragraphs, bullets and rows of a Markdown text, with marks."""
     tokens, _ = _markdown.parse(source)
     return tuple(_blocks(tokens))  # type: ignore[arg-type]
 
@@ -105,27 +109,27 @@ def _blocks(tokens: Iterable[Token]) -> Iterator[str | Row]:
 
 def _rows(table: Token) -> Iterator[Row]:
     head, *bodies = table["children"]
-    names, label = tuple(_unmarked(name) for name in _cells(head)), ""
+    head_cells, label = tuple(_without_marks(name) for name in _cells(head)), ""
     for row in (row for body in bodies for row in body["children"]):
         cells = _cells(row)
         label = cells[0] or label
-        yield Row(names, cells, label)
+        yield Row(head_cells, cells, label)
 
 
 def _cells(row: Token) -> tuple[str, ...]:
-    # In a table, a bar has its backslash in code, too.
+    # In a table, bars are escaped even inside code.
     return tuple(_text(cell["children"]).replace("\\|", "|") for cell in row["children"])
 
 
 def _inline(source: str) -> str:
-    """Return the text of Markdown that is a part of a paragraph, with marks."""
+    """Return the text of a part of a Markdown paragraph, with marks."""
     state = _markdown.inline.state_cls({})
     state.src = source.strip()
     return _text(_markdown.inline.parse(state)).replace("\\|", "|")
 
 
 def _text(tokens: Sequence[Token]) -> str:
-    """Return the text of the parts of a paragraph, with marks."""
+    """Return the text of the tokens of a paragraph, with marks."""
     return " ".join("".join(_raw(token) for token in tokens).split())
 
 
@@ -147,5 +151,5 @@ def _code_pieces(source: str) -> list[str]:
     return [" ".join(block.split()) for block in blocks]
 
 
-def _unmarked(text: str) -> str:
+def _without_marks(text: str) -> str:
     return text.replace(MARK, "")

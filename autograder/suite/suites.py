@@ -4,12 +4,14 @@ The `__init__.py` of the package, `chNN_name.visible` or `chNN_name.hidden`, con
 
     PACKAGES          the ROS 2 packages that a submission must contain
     MODULES           its modules with checks, in the order in which they are run
-    GROUPS            optional: the groups of checks in the order in which results show them, instead of MODULES
+    GROUPS            optional: the groups of checks in the order in which results show them; by default, they follow
+                      the order of MODULES
     FOLDERS           optional: folders in `src` that a submission contains besides its packages
-    READS             optional: files and folders of the course, by their paths below its root, that the checks read
-                      besides those in their own chapter's folder
-    BUILD_MAY_FAIL    optional, True: a package that is missing or does not build does not end the grading. Checks see
-                      it by the fixture `builds`, and those of a built package name one that asks for it in `needs`.
+    READS             optional: files and folders of the course that the checks read outside their own chapter's folder,
+                      as paths below the course's root
+    BUILD_MAY_FAIL    optional: if True, a package that is missing or does not build does not end the grading. The
+                      fixture `builds` tells checks what was built. A check that requires a built package names, in
+                      `needs`, a check that fails if the package was not built.
     OWN_TESTS         optional: the checks that lose points if the submission's own tests of its other files fail
 """
 
@@ -28,7 +30,7 @@ from autograder.suite.declaration import Check, check_of
 
 HOME = "autograder.checks"
 VISIBLE, HIDDEN = "visible", "hidden"
-_importing = RLock()  # two threads that import checks at once may each wait for a module that the other imports
+_import_lock = RLock()  # otherwise, two threads that import checks could wait for each other's modules
 
 
 @dataclass(frozen=True)
@@ -36,14 +38,14 @@ class Suite:
     """The checks of an assignment, hidden or visible.
 
     Attributes:
-        assignment: the assignment that it judges.
-        packages: ROS 2 packages that a submission must bring.
+        assignment: the assignment that it grades.
+        packages: ROS 2 packages that a submission must contain.
         files: its modules, in the order in which they are run.
         checks: every check, in the order in which results show them.
         build_may_fail: whether its checks are run even if a package is missing or does not build.
         folders: the folders that a submission contains in `src` besides its packages.
-        reads: files and folders of the course that its checks read besides their own packages, by their paths.
-        own_tests: ids of the checks that lose points by the results of the submission's own tests of its other files.
+        reads: paths of the files and folders of the course that its checks read besides their own packages.
+        own_tests: ids of the checks that lose points if the submission's own tests of its other files fail.
     """
 
     assignment: str
@@ -57,7 +59,7 @@ class Suite:
 
     @cached_property
     def version(self) -> str:
-        """The version, which changes when marks can: see `fingerprint.version`."""
+        """The version, which changes when marks may change; see `fingerprint.version`."""
         return fingerprint.version(self.assignment, self.reads)
 
     @cached_property
@@ -72,7 +74,7 @@ class Suite:
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """The folders of `src` that an answer is made of: the packages and the rest."""
+        """The folders of `src` that an answer consists of: the packages and the others."""
         return self.packages + self.folders
 
     @property
@@ -89,24 +91,24 @@ class Suite:
         return points
 
     def with_dependencies(self, *ids: str) -> tuple[str, ...]:
-        """Return the ids of checks and of all that they need, in the order of the suite."""
-        needs, needed, pending = {check.id: check.needs for check in self.checks}, set[str](), list(ids)
+        """Return the ids of checks and of all checks that they need, in the order of the suite."""
+        needs, needed_ids, pending = {check.id: check.needs for check in self.checks}, set[str](), list(ids)
         while pending:
-            if (name := pending.pop()) not in needed:
-                needed.add(name)
+            if (name := pending.pop()) not in needed_ids:
+                needed_ids.add(name)
                 pending += needs.get(name, ())
-        return tuple(check.id for check in self.checks if check.id in needed)
+        return tuple(check.id for check in self.checks if check.id in needed_ids)
 
 
 @cache
 def hidden(assignment: str) -> Suite:
-    """Return the suite that grades an assignment. Raises as `read` does."""
+    """Return the suite that grades an assignment. The errors are those of `read`."""
     return read(HOME, assignment, HIDDEN)
 
 
 @cache
 def visible(assignment: str) -> Suite:
-    """Return the checks of an assignment that students run themselves. Raises as `read` does."""
+    """Return the checks of an assignment that students run themselves. The errors are those of `read`."""
     return read(HOME, assignment, VISIBLE)
 
 
@@ -124,36 +126,38 @@ def read(home: str, assignment: str, kind: str) -> Suite:
     """Read the suite of an assignment from the package `home`.chASSIGNMENT.`kind`.
 
     Args:
-        home: the package that holds a package for each chapter.
+        home: the package that contains a package for each chapter.
         assignment: the assignment's name.
         kind: "visible" or "hidden".
 
     Raises:
-        UsageError: it does not exist.
-        GraderError: it breaks the contract of a check.
+        UsageError: the suite does not exist.
+        GraderError: the suite or one of its checks is not valid.
     """
     package = f"{home}.ch{assignment}.{kind}"
-    if assignment not in (there := assignments_with(home, kind)):
-        raise UsageError(f"there are no {kind} checks for {assignment!r}; there are for: {', '.join(there)}")
-    with _importing:
-        described = importlib.import_module(package)
-        modules = [importlib.import_module(f"{package}.{name}") for name in described.MODULES]
+    if assignment not in (existing_assignments := assignments_with(home, kind)):
+        raise UsageError(
+            f"there are no {kind} checks for {assignment!r}; there are for: {', '.join(existing_assignments)}"
+        )
+    with _import_lock:
+        suite_module = importlib.import_module(package)
+        modules = [importlib.import_module(f"{package}.{name}") for name in suite_module.MODULES]
     files = tuple(Path(inspect.getfile(module)) for module in modules)
     checks = [declared for module in modules for value in vars(module).values() if (declared := check_of(value))]
     _require_order(assignment, checks)
-    if groups := getattr(described, "GROUPS", ()):
-        if unlisted := {check.group for check in checks}.difference(groups):
-            raise GraderError(f"{assignment}: GROUPS of the {kind} checks does not name {sorted(unlisted)}")
+    if groups := getattr(suite_module, "GROUPS", ()):
+        if unlisted_groups := {check.group for check in checks}.difference(groups):
+            raise GraderError(f"{assignment}: GROUPS of the {kind} checks does not name {sorted(unlisted_groups)}")
         checks.sort(key=lambda check: groups.index(check.group))
     return Suite(
         assignment,
-        tuple(described.PACKAGES),
+        tuple(suite_module.PACKAGES),
         files,
         tuple(checks),
-        getattr(described, "BUILD_MAY_FAIL", False),
-        tuple(getattr(described, "FOLDERS", ())),
-        tuple(getattr(described, "READS", ())),
-        tuple(getattr(described, "OWN_TESTS", ())),
+        getattr(suite_module, "BUILD_MAY_FAIL", False),
+        tuple(getattr(suite_module, "FOLDERS", ())),
+        tuple(getattr(suite_module, "READS", ())),
+        tuple(getattr(suite_module, "OWN_TESTS", ())),
     )
 
 
@@ -164,11 +168,11 @@ def assignments_with(home: str, kind: str) -> list[str]:
 
 
 def _require_order(assignment: str, checks: list[Check]) -> None:
-    seen: set[str] = set()
+    earlier_ids: set[str] = set()
     for check in checks:
-        if check.id in seen:
+        if check.id in earlier_ids:
             raise GraderError(f"{assignment}: two checks are called {check.id!r}")
-        unmet = set(check.dependencies) - seen
-        if unmet:
-            raise GraderError(f"{assignment}: {check.id!r} names {sorted(unmet)}, which must come before it")
-        seen.add(check.id)
+        missing_ids = set(check.dependencies) - earlier_ids
+        if missing_ids:
+            raise GraderError(f"{assignment}: {check.id!r} names {sorted(missing_ids)}, which must come before it")
+        earlier_ids.add(check.id)

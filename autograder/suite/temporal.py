@@ -1,7 +1,7 @@
-"""Temporal logic over recorded traces: how well a formula holds, and the instant at which it first does not.
+"""Temporal logic over recorded traces: how well a formula holds, and when it is first violated.
 
 Formulas are signal temporal logic in discrete time, evaluated by rtamt with quantitative semantics (robustness): the
-value is positive where the formula holds, and its size is the distance to the border in the signals' own units.
+value is positive where the formula holds, and its magnitude is the distance to a violation, in the signals' own units.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ class Verdict:
     """The result of "always CONDITION" on a trace.
 
     Attributes:
-        robustness: the smallest value of the condition; above 0 when it always holds.
-        violated_at: the first time, in seconds, at which the condition does not hold; None when it always does.
+        robustness: the smallest value of the condition; above 0 if it always holds.
+        violated_at: the first time, in seconds, at which the condition does not hold; None if it always does.
         times: the trace's times, in seconds.
-        values: the condition's value at each of them.
+        values: the condition's value at each time.
     """
 
     robustness: float
@@ -41,12 +41,12 @@ def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequenc
     Args:
         condition: a formula of rtamt, such as `gap > 0.05` or `(blocked > 0) implies eventually[0:10] (turn > 0)`; its
             intervals count samples.
-        times: seconds, rising, one a sample, two or more.
-        signals: one value a sample, by the names that the formula uses.
+        times: the times of the samples, in seconds, ascending; at least two.
+        signals: for each name in the formula, one value per sample.
 
     Raises:
         rtamt.RTAMTException: the formula is malformed.
-        CheckFailed: the trace has fewer than two samples, as when a program has sent nothing.
+        CheckFailed: the trace has fewer than two samples, for example because a program sent nothing.
     """
     expect(len(times) > 1, "Fewer than two messages came, so nothing could be judged.")
     specification = rtamt.StlDiscreteTimeSpecification()
@@ -56,6 +56,8 @@ def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequenc
     specification.parse()
     trace = {name: [float(value) for value in values] for name, values in signals.items()}
     values = [value for _, value in specification.evaluate({"time": list(range(len(times))), **trace})]
-    bad = next((index for index, value in enumerate(values) if value <= 0.0), None)
+    violation = next((index for index, value in enumerate(values) if value <= 0.0), None)
     seconds = tuple(float(time) for time in times)
-    return Verdict(float(min(values)), None if bad is None else seconds[bad], seconds, tuple(map(float, values)))
+    return Verdict(
+        float(min(values)), None if violation is None else seconds[violation], seconds, tuple(map(float, values))
+    )

@@ -1,7 +1,7 @@
-"""The simulator as a ROS 2 robot: `/scan`, `/odom` and `/clock` out, `/cmd_vel` in.
+"""The simulator as a ROS 2 robot, which publishes `/scan`, `/odom` and `/clock` and subscribes to `/cmd_vel`.
 
-`sim.bridge.messages` holds the pure conversions, `sim.bridge.node` the node, `Bridge` runs it beside a notebook's own
-nodes. `import sim.bridge` alone imports no ROS; `Bridge` does. ROS is switched on by the caller, before that.
+`sim.bridge.messages` converts messages, `sim.bridge.node` contains the node, and `Bridge` runs it beside the nodes of a
+notebook. `import sim.bridge` does not import ROS, but `Bridge` does: the caller has to make it importable first.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ __all__ = ["Bridge"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import the node, and rclpy with it, only for those who ask for it."""
+    """Import the node, and rclpy with it, only when `Bridge` is used."""
     if name == "Bridge":
         from importlib import import_module
 

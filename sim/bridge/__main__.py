@@ -1,4 +1,4 @@
-"""`python -m sim.bridge --ros-args -p world:=lab.yaml`: the node alone, for a launch file."""
+"""Runs only the node, for launch files: `python -m sim.bridge --ros-args -p world:=lab.yaml`."""
 
 import sys
 

@@ -1,9 +1,9 @@
-"""The bridge inside a notebook: the node on a thread of its own, with its own context, beside the student's node.
+"""Runs the node beside the student's node in a notebook, in a separate thread and with a separate context.
 
     >>> with Bridge("assets/worlds/lab.yaml", speed=2.0) as bridge:
     ...     view = live(bridge)
 
-Nothing of the caller's rclpy is touched: no default context, no signal handler.
+The caller's rclpy is not changed: the node does not use the default context, and installs no signal handler.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ from sim.bridge.settings import SETTINGS
 from sim.exceptions import SpecError
 from sim.simulation import Simulation
 
-THREAD_TIMEOUT_SECONDS = 10.0  # for which a call waits for the node's thread
+THREAD_TIMEOUT_SECONDS = 10.0  # the longest time that a call waits for the node's thread
 
 
 class Bridge:
     """A running simulator node. `settings` are the node's parameters by name, as in `sim.bridge.settings`.
 
     Raises:
-        WorldError: for a world that can't be read.
-        SpecError: for settings that make no sense together.
-        rclpy.exceptions.ParameterException: for one out of range, or of the wrong type.
+        WorldError: the world cannot be read.
+        SpecError: the settings contradict each other.
+        rclpy.exceptions.ParameterException: a setting is out of range or has the wrong type.
     """
 
     def __init__(self, world: str | Path, *, domain_id: int | None = None, **settings: Any) -> None:
-        unknown = sorted(set(settings) - {setting.name for setting in SETTINGS})
-        if unknown:
-            known = ", ".join(setting.name for setting in SETTINGS)
-            raise SpecError(f"the simulator has no setting {unknown[0]!r}; it has {known}")
+        unknown_names = sorted(set(settings) - {setting.name for setting in SETTINGS})
+        if unknown_names:
+            known_names = ", ".join(setting.name for setting in SETTINGS)
+            raise SpecError(f"the simulator has no setting {unknown_names[0]!r}; it has {known_names}")
         overrides = [Parameter(name, value=value) for name, value in {"world": str(world), **settings}.items()]
         self._context = Context()
         rclpy.init(context=self._context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
@@ -58,47 +58,47 @@ class Bridge:
 
     @property
     def simulation(self) -> Simulation:
-        """What the run is made of."""
+        """The parameters of the run."""
         return self._node.driver.simulation
 
     @property
     def driver(self) -> Driver:
-        """The run; to look at, not to step."""
+        """The run, which may be inspected but not stepped."""
         return self._node.driver
 
     @property
     def paused(self) -> bool:
-        """Whether simulated time stands still."""
+        """Whether simulated time is stopped."""
         return self._node.paused
 
     @property
     def running(self) -> bool:
-        """Whether the node is still there."""
+        """Whether the node still runs."""
         return self._thread.is_alive()
 
     def pause(self) -> None:
-        """Let simulated time stand still.
+        """Stop simulated time.
 
         Raises:
-            RuntimeError: if the bridge has been stopped; so do `resume`, `step` and `reset`.
+            RuntimeError: the bridge has been stopped. `resume`, `step` and `reset` also raise it.
         """
         self._on_thread(lambda: self._node.pause(True))
 
     def resume(self) -> None:
-        """Let simulated time go on."""
+        """Continue simulated time."""
         self._on_thread(lambda: self._node.pause(False))
 
     def step(self, seconds: float) -> None:
-        """Pause, and go on by `seconds` of simulated time."""
+        """Pause, and simulate `seconds`."""
         self._on_thread(lambda: self._node.step(seconds))
 
     def reset(self) -> None:
-        """Go back to the start."""
+        """Return to the start."""
         self._on_thread(self._node.reset)
 
     def stop(self) -> None:
-        """End the node and its thread. Safe to call twice."""
-        if self.running:  # between two callbacks: one that still publishes would trip over the end of its context
+        """Stop the node and its thread. A second call does nothing."""
+        if self.running:  # end between two callbacks, because a callback that publishes would fail without its context
             self._executor.create_task(self._context.try_shutdown)
             self._thread.join(THREAD_TIMEOUT_SECONDS)
         self._context.try_shutdown()

@@ -1,4 +1,4 @@
-"""Steps a simulation for the ROS node, and says what is due to be sent after each tick. It imports no ROS."""
+"""Steps a simulation for the ROS node, and determines what to send after each tick, without importing ROS."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from sim.simulation import Simulation, State, observe, start, step
 
 
 @dataclass(frozen=True)
-class Sent:
-    """What is sent after one tick: the state for the clock, and by robot name who sends odometry and which scan."""
+class TickOutput:
+    """The output of one tick: the state, the names of the robots that send odometry, and scans by robot name."""
 
     state: State
     odometry: tuple[str, ...]
@@ -21,10 +21,10 @@ class Sent:
 
 
 class Driver:
-    """Holds the state of a run, and the commands that have come in since the last tick.
+    """Keeps the state of a run, and the commands received since the last tick.
 
-    A command is handed to the core once, at the tick after it came: the robot's watchdog counts simulated time from
-    there. `newest` holds each robot's last scan, and the pose it was taken from.
+    A command is passed to the core once, at the next tick. From then on, the robot's watchdog counts simulated time.
+    `newest_scans` contains each robot's last scan, and the robot's pose at that scan.
     """
 
     def __init__(self, simulation: Simulation, *, odometry_rate: float = 50.0) -> None:
@@ -33,7 +33,7 @@ class Driver:
         self.reset()
 
     def warm_up(self) -> None:
-        """Scan and step once without keeping anything: a compiling engine compiles before time starts."""
+        """Scan and step once, and discard the results, so that an engine is compiled before time starts."""
         state = step(self.simulation, start(self.simulation))
         for spec in self.simulation.robots:
             if spec.lidar is not None:
@@ -41,32 +41,32 @@ class Driver:
 
     @property
     def state(self) -> State:
-        """The run as it is now."""
+        """The current state of the run."""
         return self._state
 
     def reset(self) -> None:
-        """Go back to the start; commands that have not been obeyed yet are forgotten."""
+        """Return to the start, and drop commands that have not been executed."""
         self._state = start(self.simulation)
-        self._pending: dict[str, Command] = {}
-        self.newest: dict[str, tuple[Scan, Pose]] = {}
+        self._pending_commands: dict[str, Command] = {}
+        self.newest_scans: dict[str, tuple[Scan, Pose]] = {}
 
     def command(self, robot: str, command: Command) -> None:
-        """Take a command for `robot`; a newer one before the next tick replaces it."""
-        self._pending[robot] = command
+        """Store a command for `robot` until the next tick. A newer one replaces it."""
+        self._pending_commands[robot] = command
 
     def ticks(self, seconds: float) -> int:
-        """Return how many whole ticks there are in `seconds` of simulated time."""
+        """Return the number of whole ticks in `seconds` of simulated time."""
         return int(seconds / self.simulation.tick + 1e-9)
 
-    def run(self, ticks: int) -> Iterator[Sent]:
-        """Go on by so many ticks, and yield what is due after each."""
+    def run(self, ticks: int) -> Iterator[TickOutput]:
+        """Simulate `ticks` ticks, and yield the output of each."""
         for _ in range(ticks):
-            before = self._state.time_ns
-            commands, self._pending = self._pending, {}
+            before_ns = self._state.time_ns
+            commands, self._pending_commands = self._pending_commands, {}
             self._state = step(self.simulation, self._state, commands)
-            yield self._due(before)
+            yield self._output(before_ns)
 
-    def _due(self, before_ns: int) -> Sent:
+    def _output(self, before_ns: int) -> TickOutput:
         state = self._state
         scans = {}
         for index, spec in enumerate(self.simulation.robots):
@@ -74,7 +74,7 @@ class Driver:
                 scan = observe(self.simulation, state, spec.name)
                 if scan is not None:
                     scans[spec.name] = scan
-                    self.newest[spec.name] = (scan, state.robots[index].pose)
+                    self.newest_scans[spec.name] = (scan, state.robots[index].pose)
         names = tuple(spec.name for spec in self.simulation.robots)
-        wanted = due(before_ns, state.time_ns, self._odometry_rate)
-        return Sent(state, names if wanted else (), scans)
+        sends_odometry = due(before_ns, state.time_ns, self._odometry_rate)
+        return TickOutput(state, names if sends_odometry else (), scans)

@@ -1,7 +1,7 @@
-"""What RViz, nav2 and slam_toolbox ask for besides a scan: frames on /tf, a map, and the true pose. All by option.
+"""Optional topics that RViz, nav2 and slam_toolbox need besides a scan: frames on /tf, a map, and the true pose.
 
-The frames are those of REP 105: map, odom, base_link, and laser where the lidar is. With several robots, each has
-frames of its own, with its namespace in front, below one map.
+The frames are map, odom and base_link, as in REP 105, and laser for the lidar. With several robots, each has its own
+frames, with its namespace as a prefix, below one map.
 """
 
 from __future__ import annotations
@@ -20,52 +20,52 @@ from sim.maps.grid import grid_of
 from sim.simulation import Simulation, State
 
 LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""As map_server and tf2 have it: who comes late gets the last message, too."""
+"""The profile of map_server and tf2: late subscriptions also receive the last message."""
 
 TF_QOS = QoSProfile(depth=100, reliability=ReliabilityPolicy.RELIABLE)
-"""As tf2's broadcaster has it."""
+"""The profile of tf2's broadcaster."""
 
 FRAMES = ("base_link", "laser")
-"""What stands still towards each other on a robot."""
+"""The frames of a robot that do not move relative to each other."""
 
 
 class Localization:
-    """The topics that the settings ask for."""
+    """Publishes the topics that are enabled in the settings."""
 
     def __init__(
         self, node: Node, simulation: Simulation, prefixes: Mapping[str, str], values: Mapping[str, Any]
     ) -> None:
-        self._frames, self._prefixes = values["tf"], prefixes
-        self._tf = None if self._frames == "none" else node.create_publisher(TFMessage, "/tf", TF_QOS)
-        self._truth = {
+        self._tf_mode, self._prefixes = values["tf"], prefixes
+        self._tf_publisher = None if self._tf_mode == "none" else node.create_publisher(TFMessage, "/tf", TF_QOS)
+        self._truth_publishers = {
             name: node.create_publisher(Odometry, f"{prefix}ground_truth", 10)
             for name, prefix in prefixes.items()
             if values["ground_truth"]
         }
-        self._kept: list[Any] = []  # latched publishers, which speak only as long as they live
-        if self._tf is not None:
+        self._latched_publishers: list[Any] = []  # latched publishers, which send their message only while they exist
+        if self._tf_publisher is not None:
             self._latch(node, TFMessage, "/tf_static", TFMessage(transforms=self._lidars(simulation)))
         if values["publish_map"]:
             self._latch(node, OccupancyGrid, "/map", grid_to_msg(grid_of(simulation.world, values["map_resolution"])))
 
     def publish(self, state: State, odometry: tuple[str, ...], scans: Mapping[str, Scan]) -> None:
-        """Send the frames and the true pose of robots that send odometry or a scan now: a scan needs its instant."""
+        """Send the frames and the true pose of each robot that sends odometry or a scan in this state."""
         transforms = []
         for robot in state.robots:
             if robot.name not in odometry and robot.name not in scans:
                 continue
             prefix = self._prefixes[robot.name]
-            if robot.name in self._truth:
-                self._truth[robot.name].publish(truth_to_msg(robot, state.time_ns, f"{prefix}base_link"))
-            if self._frames == "map":
+            if robot.name in self._truth_publishers:
+                self._truth_publishers[robot.name].publish(truth_to_msg(robot, state.time_ns, f"{prefix}base_link"))
+            if self._tf_mode == "map":
                 transforms.append(transform_to_msg(map_to_odom(robot), state.time_ns, "map", f"{prefix}odom"))
             frames = (f"{prefix}odom", f"{prefix}base_link")
             transforms.append(transform_to_msg(robot.odometry, state.time_ns, *frames))
-        if self._tf is not None and transforms:
-            self._tf.publish(TFMessage(transforms=transforms))
+        if self._tf_publisher is not None and transforms:
+            self._tf_publisher.publish(TFMessage(transforms=transforms))
 
     def _lidars(self, simulation: Simulation) -> list[Any]:
-        """Return where each lidar is on its robot."""
+        """Return the pose of each lidar on its robot."""
         return [
             transform_to_msg(spec.lidar.mount, 0, *(f"{self._prefixes[spec.name]}{frame}" for frame in FRAMES))
             for spec in simulation.robots
@@ -75,4 +75,4 @@ class Localization:
     def _latch(self, node: Node, kind: Any, topic: str, message: Any) -> None:
         publisher = node.create_publisher(kind, topic, LATCHED)
         publisher.publish(message)
-        self._kept.append(publisher)
+        self._latched_publishers.append(publisher)

@@ -1,7 +1,7 @@
-"""Between the simulator's values and ROS messages: pure functions, no node, no clock, no topic.
+"""Converts the simulator's values to ROS messages and back, with pure functions.
 
-Whoever puts a scan on a topic, the bridge in real time or a grader in lockstep, uses these, so that a student's node
-sees the same bytes from both.
+The bridge in real time and the grader in lockstep use these functions, so that a student's node receives the same bytes
+from both.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from sim.state import RobotState
 NANOSECONDS = 1_000_000_000
 
 _PLANAR = np.array([row * 6 + column for row in (0, 1, 5) for column in (0, 1, 5)])
-"""Where the covariance of x, y and yaw stands in that of ROS's six axes, row by row."""
+"""The indices of x, y and yaw in the covariance of ROS's six axes, row by row."""
 
 
 def time_to_msg(time_ns: int) -> Any:
@@ -40,9 +40,9 @@ def clock_to_msg(time_ns: int) -> Any:
 
 
 def scan_to_msg(scan: Scan, frame_id: str | None = None) -> Any:
-    """Return `scan` as sensor_msgs/LaserScan, field by field; `frame_id` replaces its own frame where given.
+    """Return `scan` as sensor_msgs/LaserScan; `frame_id`, if given, replaces the scan's frame.
 
-    Ranges keep their bits: infinities of REP 117 and nan included.
+    The bits of the ranges do not change, including the infinities and nan of REP 117.
     """
     msg = LaserScan()
     msg.header.stamp = time_to_msg(scan.stamp_ns)
@@ -60,16 +60,16 @@ def scan_to_msg(scan: Scan, frame_id: str | None = None) -> Any:
 
 
 def odom_to_msg(robot: RobotState, time_ns: int, frame_id: str = "odom", child_frame_id: str = "base_link") -> Any:
-    """Return what a robot's wheels say as nav_msgs/Odometry.
+    """Return the odometry of a robot's wheels as nav_msgs/Odometry.
 
-    The covariance of x, y and yaw is the robot's. The other axes are 0, for a robot on a plane knows that it neither
-    climbs nor tilts.
+    The covariance of x, y and yaw is the robot's. That of the other axes is 0, because a robot on a plane does not
+    climb or tilt.
 
     Args:
         robot: the robot.
-        time_ns: simulated time in ns, for the stamp.
-        frame_id: of the pose (REP 105).
-        child_frame_id: of the twist.
+        time_ns: the simulated time in ns, for the stamp.
+        frame_id: the frame of the pose (REP 105).
+        child_frame_id: the frame of the twist.
     """
     msg = Odometry()
     msg.header.stamp = time_to_msg(time_ns)
@@ -85,7 +85,7 @@ def odom_to_msg(robot: RobotState, time_ns: int, frame_id: str = "odom", child_f
 
 
 def truth_to_msg(robot: RobotState, time_ns: int, child_frame_id: str = "base_link") -> Any:
-    """Return where a robot truly is as nav_msgs/Odometry in frame `map`, with no covariance."""
+    """Return the true pose and velocity of a robot as nav_msgs/Odometry in frame `map`, without a covariance."""
     msg = Odometry()
     msg.header.stamp = time_to_msg(time_ns)
     msg.header.frame_id = "map"
@@ -99,7 +99,7 @@ def truth_to_msg(robot: RobotState, time_ns: int, child_frame_id: str = "base_li
 
 
 def transform_to_msg(pose: Pose, time_ns: int, frame_id: str, child_frame_id: str) -> Any:
-    """Return geometry_msgs/TransformStamped: `pose` is that of the child frame in the frame `frame_id`."""
+    """Return the pose of the child frame in the frame `frame_id` as geometry_msgs/TransformStamped."""
     msg = TransformStamped()
     msg.header.stamp = time_to_msg(time_ns)
     msg.header.frame_id = frame_id
@@ -111,7 +111,7 @@ def transform_to_msg(pose: Pose, time_ns: int, frame_id: str, child_frame_id: st
 
 
 def map_to_odom(robot: RobotState) -> Pose:
-    """Return the pose of frame odom in frame map that corrects the drift: with it, base_link is where the robot is."""
+    """Return the pose of frame odom in frame map that corrects the drift, so that base_link has the true pose."""
     turn = robot.pose.theta - robot.odometry.theta
     cosine, sine = math.cos(turn), math.sin(turn)
     x, y = robot.odometry.x, robot.odometry.y
@@ -132,12 +132,12 @@ def grid_to_msg(grid: Grid, time_ns: int = 0) -> Any:
 
 
 def twist_to_command(msg: Any) -> Command:
-    """Return what a geometry_msgs/Twist or TwistStamped asks of a differential drive.
+    """Return the command in a geometry_msgs/Twist or TwistStamped for a differential drive.
 
-    Only `linear.x` and `angular.z` count: the robot can't move in the other directions.
+    Only `linear.x` and `angular.z` count, because the robot cannot move in the other directions.
 
     Raises:
-        ValueError: if one of the two is not a finite number; such a command must not reach a motor.
+        ValueError: one of the two is not a finite number. Such a command must not reach a motor.
     """
     twist = msg.twist if isinstance(msg, TwistStamped) else msg
     linear, angular = twist.linear.x, twist.angular.z

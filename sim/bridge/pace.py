@@ -1,51 +1,51 @@
-"""How far simulated time goes on at a moment of real time. No ROS and no clock in here."""
+"""Computes how much simulated time is due at an instant of real time. It needs neither ROS nor a clock."""
 
 from __future__ import annotations
 
 PERIOD = 0.01
-"""Seconds of real time between two looks at the clock."""
+"""Seconds of real time between two calls of the timer."""
 
-LONGEST_LEAP = 0.25
-"""Seconds of real time made up for. A machine that sleeps must not make the robot leap."""
+MAX_BACKLOG = 0.25
+"""The longest delay that is caught up, in s of real time, so that a robot does not jump after its machine has slept."""
 
-AT_ONCE = 0.1
-"""Seconds of simulated time made up for between two looks at the commands: less than a robot's watchdog waits."""
+MAX_BATCH = 0.1
+"""The longest time simulated before commands are received again, in s: less than the time of a robot's watchdog."""
 
 
 class Pace:
-    """Lets simulated time follow real time. Time begins with the first look.
+    """Lets simulated time follow real time. Time begins with the first call of `due`.
 
-    `late` says whether the last look found more time passed than is made up for; the rest is forgotten.
+    `is_late` is true if more time had passed at the last call than can be caught up. The excess is dropped.
     """
 
     def __init__(self, tick: float) -> None:
-        """Begin with nothing to make up for; `tick` is the physics period in s."""
-        self.late = False
+        """Begin without a backlog; `tick` is the physics period in s."""
+        self.is_late = False
         self._tick = tick
-        self._last: float | None = None
-        self._behind = 0.0
+        self._last_call: float | None = None
+        self._backlog = 0.0
 
     def due(self, now: float, speed: float, paused: bool = False) -> float:
-        """Return how much simulated time, in s, may go on now; the caller says by `went_on` how much did.
+        """Return how much simulated time, in s, is due now. The caller reports how much of it has been simulated.
 
         Args:
-            now: real time in s.
-            speed: simulated seconds in a second of real time.
-            paused: whether the time since the last look does not count.
+            now: the real time in s.
+            speed: simulated seconds per second of real time.
+            paused: whether to ignore the time since the last call.
         """
-        passed, self._last = 0.0 if self._last is None else now - self._last, now
+        elapsed, self._last_call = 0.0 if self._last_call is None else now - self._last_call, now
         if paused:
             return 0.0
-        self._behind += passed * speed
-        longest = LONGEST_LEAP * speed + self._tick
-        self.late = self._behind > longest
-        self._behind = min(self._behind, longest)
-        return min(self._behind, max(AT_ONCE, 2.0 * PERIOD * speed, self._tick))
+        self._backlog += elapsed * speed
+        max_backlog = MAX_BACKLOG * speed + self._tick
+        self.is_late = self._backlog > max_backlog
+        self._backlog = min(self._backlog, max_backlog)
+        return min(self._backlog, max(MAX_BATCH, 2.0 * PERIOD * speed, self._tick))
 
-    def went_on(self, seconds: float) -> None:
-        """Take note that so much simulated time has gone on."""
-        self._behind -= seconds
+    def count_simulated(self, seconds: float) -> None:
+        """Subtract simulated time from the backlog."""
+        self._backlog -= seconds
 
-    def forget(self) -> None:
-        """Make up for nothing that is past."""
-        self._behind = 0.0
+    def clear(self) -> None:
+        """Drop the backlog."""
+        self._backlog = 0.0

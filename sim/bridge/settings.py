@@ -1,4 +1,4 @@
-"""The node's parameters: each with its type, its default, its range and its sentence, in one table."""
+"""The node's parameters, in one table: each with its type, default, range and description."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ LIDARS = {"lds_01": LDS_01, "rplidar_a1": RPLIDAR_A1, "utm_30lx": UTM_30LX}
 
 @dataclass(frozen=True)
 class Setting:
-    """One parameter. `low` and `high` are the inclusive range of a number; only a `live` one may change later."""
+    """A parameter. `low` and `high` are the inclusive range of a number. If it is `live`, it may change at run time."""
 
     name: str
     default: Any
-    sentence: str
+    description: str
     low: float | None = None
     high: float | None = None
     choices: tuple[str, ...] = ()
     live: bool = False
 
     def descriptor(self) -> ParameterDescriptor:
-        """Return it as `ros2 param describe` shows it."""
-        descriptor = ParameterDescriptor(description=self.sentence, read_only=not self.live)
+        """Return the description that `ros2 param describe` shows."""
+        descriptor = ParameterDescriptor(description=self.description, read_only=not self.live)
         if self.choices:
             descriptor.additional_constraints = f"one of: {', '.join(self.choices)}"
         if isinstance(self.default, float) and self.low is not None and self.high is not None:
@@ -97,9 +97,9 @@ def declare(node: Node) -> dict[str, Any]:
     """Declare every setting on `node` and return the values.
 
     Raises:
-        rclpy's InvalidParameterValueException or InvalidParameterTypeException, for a value out of range or of
-        another type.
-        SpecError: for a word that is none of the choices.
+        rclpy.exceptions.InvalidParameterValueException: a value is out of range.
+        rclpy.exceptions.InvalidParameterTypeException: a value has the wrong type.
+        SpecError: a value is not one of the choices.
     """
     values = {}
     for setting in SETTINGS:
@@ -114,8 +114,8 @@ def simulation_of(values: dict[str, Any]) -> Simulation:
     """Return the simulation that the values describe.
 
     Raises:
-        WorldError: for a world that can't be read.
-        SpecError: for values that make no sense together.
+        WorldError: the world cannot be read.
+        SpecError: the values contradict each other.
     """
     if not values["world"]:
         raise SpecError("parameter 'world' is empty: give the path of a world's YAML file")

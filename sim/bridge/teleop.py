@@ -1,4 +1,4 @@
-"""Drive a robot by the keys of a terminal: the simulator's, or a real one that listens to cmd_vel."""
+"""Drives a robot with the keys of a terminal: a simulated robot, or a real one that subscribes to cmd_vel."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from rclpy.duration import Duration
 from sim.exceptions import SpecError
 
 PERIOD = 0.1
-"""Seconds between two commands. A command is repeated until the next key, for robots stop without commands."""
+"""Seconds between two commands. A command is repeated until the next key, because robots stop without commands."""
 
 HELP = "w or up: faster   s or down: slower   a or left, d or right: turn   space: stop   q: end"
 
 ARROWS = {"\x1b[A": "w", "\x1b[B": "s", "\x1b[D": "a", "\x1b[C": "d"}
 
 
-def changed(linear: float, angular: float, key: str, step: float, turn: float) -> tuple[float, float]:
-    """Return the command after a key, in m/s and rad/s; a key without a meaning changes nothing.
+def command_after(linear: float, angular: float, key: str, step: float, turn: float) -> tuple[float, float]:
+    """Return the command after a key, in m/s and rad/s. An unknown key does not change it.
 
     Args:
-        linear: the speed before, in m/s.
-        angular: the turning rate before, in rad/s.
-        key: a letter, or what a terminal sends for an arrow key.
-        step: what a key adds to the speed, in m/s.
-        turn: what a key adds to the turning rate, in rad/s.
+        linear: the speed before the key, in m/s.
+        angular: the turning rate before the key, in rad/s.
+        key: a letter, or the sequence that a terminal sends for an arrow key.
+        step: the change of the speed by a key, in m/s.
+        turn: the change of the turning rate by a key, in rad/s.
     """
     match ARROWS.get(key, key).lower():
         case "w":
@@ -49,10 +49,10 @@ def changed(linear: float, angular: float, key: str, step: float, turn: float) -
 
 
 def drive(namespace: str = "", *, stamped: bool = False, step: float = 0.05, turn: float = 0.2) -> None:
-    """Publish commands on cmd_vel until q or Ctrl-C, and a last one that stops the robot.
+    """Publish commands on cmd_vel until q or Ctrl-C, and then one that stops the robot.
 
     Raises:
-        SpecError: the input is no terminal.
+        SpecError: the input is not a terminal.
     """
     if not sys.stdin.isatty():
         raise SpecError("teleop reads single keys: run it in a terminal")
@@ -73,7 +73,7 @@ def drive(namespace: str = "", *, stamped: bool = False, step: float = 0.05, tur
         with _single_keys(sys.stdin.fileno()) as descriptor:
             print(HELP, flush=True)
             for key in _keys(descriptor):
-                linear, angular = changed(linear, angular, key, step, turn)
+                linear, angular = command_after(linear, angular, key, step, turn)
                 publish(linear, angular)
                 if key:
                     print(f"\r{linear:+.2f} m/s  {angular:+.2f} rad/s ", end="", flush=True)
@@ -82,14 +82,14 @@ def drive(namespace: str = "", *, stamped: bool = False, step: float = 0.05, tur
     finally:
         if rclpy.ok():
             publish(0.0, 0.0)
-            publisher.wait_for_all_acked(Duration(seconds=1.0))  # else it could end with this process
+            publisher.wait_for_all_acked(Duration(seconds=1.0))  # otherwise, this process could end first
         print()
         node.destroy_node()
         rclpy.try_shutdown()
 
 
 def _keys(descriptor: int) -> Iterator[str]:
-    """Yield each key, and "" if none came within `PERIOD`, until q or the end of the input."""
+    """Yield each key, or "" if none was pressed within `PERIOD`, until q or the end of the input."""
     while True:
         ready, _, _ = select.select([descriptor], [], [], PERIOD)
         data = os.read(descriptor, 64).decode(errors="replace") if ready else ""
@@ -103,10 +103,10 @@ def _keys(descriptor: int) -> Iterator[str]:
 
 @contextmanager
 def _single_keys(descriptor: int) -> Iterator[int]:
-    """Let a terminal hand over keys at once and print none of them; afterwards it is as before."""
-    before = termios.tcgetattr(descriptor)
+    """Make a terminal return each key at once without printing it, and restore it afterwards."""
+    attributes = termios.tcgetattr(descriptor)
     tty.setcbreak(descriptor)
     try:
         yield descriptor
     finally:
-        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+        termios.tcsetattr(descriptor, termios.TCSADRAIN, attributes)

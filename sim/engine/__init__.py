@@ -1,9 +1,9 @@
-"""Selects the engine by its name: arrays (numpy) or compiled (numba), with the same bits from both.
+"""Selects the engine by its name: arrays (numpy) or compiled (numba). Both compute the same bits.
 
-What is guaranteed: the same simulation and the same commands give the same states (float64) and the same scans
-(float32), bit for bit, from either engine, in any order of calls, on any processor with IEEE 754 doubles. Between a
-seed and a scan stand only operations that are correctly rounded everywhere: sums, products, quotients, square roots.
-What is not: that another version of this package computes the same.
+The same simulation and the same commands are guaranteed to give the same states (float64) and the same scans (float32),
+bit for bit, with either engine, in any order of calls, on any processor with IEEE 754 doubles. Scans are computed from
+a seed only with operations that are correctly rounded everywhere: sums, products, quotients and square roots. Another
+version of this package may compute other results.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ EngineName = Literal["numpy", "numba", "auto"]
 
 
 def engine(name: EngineName) -> Any:
-    """Return the module of an engine. Raises EngineError for a name that is unknown or not installed.
+    """Return the module of an engine. Raise an EngineError if the name is unknown, or the engine is not installed.
 
-    numba is imported here and nowhere else: neither `import sim` nor the array engine needs it.
+    numba is imported only here, because `import sim` and the array engine do not need it.
     """
     if name == "auto":
         name = "numba" if importlib.util.find_spec("numba") else "numpy"

@@ -1,8 +1,8 @@
-"""The array engine: a scan in some sixty numpy calls, with the same bits as the loops.
+"""The array engine: it computes a scan in about sixty numpy calls, with the same bits as the loops.
 
-The (wall, beam) pairs that meet are laid out in one flat list, about two for each beam, and their inverse ranges are
-computed and reduced in it. The few walls that are hard (in line with the sensor, grazed, or ending so near a beam
-that rounding could decide) are left to the scalar code, which is exact.
+The (wall, beam) pairs that meet are put in one flat list, about two for each beam, in which their inverse ranges are
+computed and reduced. The scalar code, which is exact, computes the few hard walls: those in line with the sensor, those
+that a beam grazes, and those that end so near a beam that rounding could decide.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ Float32s = NDArray[np.float32]
 
 __all__ = ["advance_free", "advance_near", "fan", "gap", "nearest", "rays", "to_readings"]
 
-# How far, in radians, numpy's arctan2 and the arithmetic after it may be off, with a wide margin.
+# An upper bound, with a wide margin, on the error of numpy's arctan2 and the arithmetic after it, in radians.
 BEARING_ERROR = 1e-12
-# Above so many walls it pays to leave out first those that are out of reach.
+# With more walls than this, it is faster to remove those that are out of reach first.
 MAX_WALLS_UNFILTERED = 200
-# A run of beams is looked for where it begins, and a turn earlier too, as it may go on past the end of a turn.
+# The beams of a wall are searched for on two laps, because they may continue past the end of a turn.
 LAPS = np.array(((0.0,), (1.0,)))
 
 
@@ -46,7 +46,7 @@ def fan(
     per_radian: float,
     reach: float,
 ) -> Floats:
-    """Return the ranges of a fan: see `loops.fan`, whose arguments and bits these are."""
+    """Return the ranges of a fan. Arguments and results are those of `loops.fan`, bit for bit."""
     s, c = sincos(yaw)
     directions = c * table
     dx, dy = directions
@@ -57,9 +57,9 @@ def fan(
     best.fill(NOTHING)
     if walls.shape[1] > MAX_WALLS_UNFILTERED:
         x1, x2, y1, y2 = walls[:4]
-        beside = (np.maximum(x1, x2) < ox - reach) | (np.minimum(x1, x2) > ox + reach)
-        beside |= (np.maximum(y1, y2) < oy - reach) | (np.minimum(y1, y2) > oy + reach)
-        walls = walls[:, ~beside]
+        is_out_of_reach = (np.maximum(x1, x2) < ox - reach) | (np.minimum(x1, x2) > ox + reach)
+        is_out_of_reach |= (np.maximum(y1, y2) < oy - reach) | (np.minimum(y1, y2) > oy + reach)
+        walls = walls[:, ~is_out_of_reach]
     if walls.shape[1]:
         _walls_into(best, directions, walls, ox, oy, yaw + angle_min, per_radian, reach)
     if len(circles):
@@ -72,20 +72,20 @@ def _walls_into(
     best: Floats, directions: Floats, walls: Floats, ox: float, oy: float, zero: float, per_radian: float, reach: float
 ) -> None:
     edge, length = walls[4:6], walls[6]
-    ends = walls[:4] - np.array((ox, ox, oy, oy)).reshape(4, 1)  # from the sensor
+    ends = walls[:4] - np.array((ox, ox, oy, oy)).reshape(4, 1)  # relative to the sensor
     cross = ends[::2] * edge
     h = cross[0] - cross[1]
-    apart = np.abs(ends)
-    apart = apart[:2] + apart[2:]
-    near = apart[0]
-    far = np.minimum(np.maximum(near, apart[1]), reach)
+    extents = np.abs(ends)
+    extents = extents[:2] + extents[2:]
+    near = extents[0]
+    far = np.minimum(np.maximum(near, extents[1]), reach)
     far += SMALL
     near += far
     near *= far
     near *= length
-    hard = near >= LIMIT * np.abs(h)
+    is_hard = near >= LIMIT * np.abs(h)
 
-    # bearings and runs are in turns at first, so that a lap is 1.0
+    # Bearings and runs are in turns at first, so that a lap is 1.0.
     count, size = len(best), len(h)
     full = TAU * per_radian
     doubt = BEARING_ERROR / TAU + 1e-12
@@ -97,31 +97,32 @@ def _walls_into(
     low += bearings[0]
     low -= zero / TAU - doubt
     low -= np.floor(low)
-    runs = np.empty((2, 2, size))  # begin, and from end to last beam, on each lap; the doubt is added to both
-    begins, rests = runs
-    np.subtract(low, LAPS, out=begins)
-    np.add(begins, np.abs(swing), out=rests)
-    np.subtract((count - 1) / full + 2.0 * doubt, rests, out=rests)
+    # On each lap: the number of beams before the run and after it, not yet rounded, with a margin.
+    runs = np.empty((2, 2, size))
+    beams_before, beams_after = runs
+    np.subtract(low, LAPS, out=beams_before)
+    np.add(beams_before, np.abs(swing), out=beams_after)
+    np.subtract((count - 1) / full + 2.0 * doubt, beams_after, out=beams_after)
     runs *= full
     inner = np.ceil(runs)
-    unsure = inner - runs > 1.0 - 2.0 * doubt * full
+    is_unsure = inner - runs > 1.0 - 2.0 * doubt * full
 
-    outside = np.maximum(inner, 0.0).astype(np.intp)  # how many beams are before the run, and after it
+    outside = np.maximum(inner, 0.0).astype(np.intp)  # the numbers of beams before and after the run
     starts = outside[0]
     lengths = count - starts
     lengths -= outside[1]
     np.maximum(lengths, 0, out=lengths)
-    suspects = (unsure | hard).ravel().nonzero()[0]
+    suspects = (is_unsure | is_hard).ravel().nonzero()[0]
     if len(suspects):
         for k in {place % size for place in suspects.tolist()}:
-            # a hard wall that no beam meets is left out, unless the sensor may stand on it
-            met = lengths[0, k] or lengths[1, k] or abs(swing[k]) > 0.4 or h[k] == 0.0
-            if met or unsure[:, :, k].any():
+            # A hard wall that no beam meets is skipped, unless the sensor may be on it.
+            is_met = lengths[0, k] or lengths[1, k] or abs(swing[k]) > 0.4 or h[k] == 0.0
+            if is_met or is_unsure[:, :, k].any():
                 lengths[:, k] = 0
                 px, qx, py, qy, ey, ex, _ = walls[:, k].tolist()
                 wall_into(best, directions, ox, oy, (px, py, qx, qy, ex, ey), zero, per_radian)
     h += NOTHING
-    factors = np.empty((2, 2, size))  # of x and y, the same on both laps
+    factors = np.empty((2, 2, size))  # for x and y; both laps have the same factors
     np.divide(edge[:, None], h, out=factors)
     lengths, shifts = lengths.ravel(), starts.ravel()
     shifts += lengths
@@ -141,18 +142,18 @@ def _circles_into(best: Floats, directions: Floats, circles: Floats, ox: float, 
     dx, dy = directions
     along = dx * vx + dy * vy
     s = dx * vy - dy * vx
-    most = (radius * radius) * (1.001 + TANGENT * squared)
-    which, beams = np.nonzero((s * s <= most) & (along > -1e-6 * radius))
-    if len(which):
-        along, s = along[which, beams], s[which, beams]
-        radius, squared = radius[which, 0], squared[which, 0]
+    bound = (radius * radius) * (1.001 + TANGENT * squared)
+    circle_indices, beams = np.nonzero((s * s <= bound) & (along > -1e-6 * radius))
+    if len(circle_indices):
+        along, s = along[circle_indices, beams], s[circle_indices, beams]
+        radius, squared = radius[circle_indices, 0], squared[circle_indices, 0]
         gap = (radius - s) * (radius + s)
-        tangent = np.abs(gap) <= TANGENT * (radius * radius) * squared
-        meets = (gap > 0.0) & (along > 0.0)
-        distance = along - np.sqrt(np.where(meets, gap, 0.0))
-        inverse = np.where(meets, 1.0 / np.where(meets & (distance > NOTHING), distance, NOTHING), 0.0)
-        for at in np.flatnonzero(tangent).tolist():
-            (cx, cy, r), beam = circles[which[at]].tolist(), beams[at]
+        is_tangent = np.abs(gap) <= TANGENT * (radius * radius) * squared
+        is_met_ahead = (gap > 0.0) & (along > 0.0)
+        distance = along - np.sqrt(np.where(is_met_ahead, gap, 0.0))
+        inverse = np.where(is_met_ahead, 1.0 / np.where(is_met_ahead & (distance > NOTHING), distance, NOTHING), 0.0)
+        for at in np.flatnonzero(is_tangent).tolist():
+            (cx, cy, r), beam = circles[circle_indices[at]].tolist(), beams[at]
             inverse[at] = circle_inverse(float(dx[beam]), float(dy[beam]), ox, oy, cx, cy, r)
         inverse[squared <= radius * radius] = 0.0
         np.maximum.at(best, beams, inverse)
@@ -161,11 +162,11 @@ def _circles_into(best: Floats, directions: Floats, circles: Floats, ox: float, 
 
 
 def rays(walls: Floats, circles: Floats, origins: Floats, directions: Floats) -> Floats:
-    """Return the ranges of single beams: see `traverse.rays`, whose arguments and bits these are."""
+    """Return the ranges of single beams. Arguments and results are those of `traverse.rays`, bit for bit."""
     best = np.full(len(origins), NOTHING)
-    lot = max(1, 200_000 // max(1, walls.shape[1]))
-    for at in range(0, len(origins), lot):
-        part = slice(at, at + lot)
+    batch = max(1, 200_000 // max(1, walls.shape[1]))
+    for at in range(0, len(origins), batch):
+        part = slice(at, at + batch)
         _rays_into(best[part], walls, origins[part], directions[part])
     for k in range(len(circles)):
         cx, cy, radius = circles[k].tolist()
@@ -181,28 +182,28 @@ def _rays_into(best: Floats, walls: Floats, origins: Floats, directions: Floats)
     ox, oy = origins[:, 0:1], origins[:, 1:2]
     dx, dy = directions[:, 0:1], directions[:, 1:2]
     vx, vy = x1 - ox, y1 - oy
-    one, two = dx * vy, dy * vx
-    before = one - two
-    unsure = np.abs(before) <= ERROR_BOUND * (np.abs(one) + np.abs(two))
-    one, two = dx * (y2 - oy), dy * (x2 - ox)
-    after = one - two
-    unsure |= np.abs(after) <= ERROR_BOUND * (np.abs(one) + np.abs(two))
-    one, two = vx * ey, vy * ex
-    h = one - two
-    unsure |= np.abs(h) <= 2.0 * ERROR_BOUND * (np.abs(one) + np.abs(two))
-    hit = ((before > 0.0) != (after > 0.0)) & ((h > 0.0) == (after > 0.0)) & ~unsure
+    left_term, right_term = dx * vy, dy * vx
+    before = left_term - right_term
+    is_unsure = np.abs(before) <= ERROR_BOUND * (np.abs(left_term) + np.abs(right_term))
+    left_term, right_term = dx * (y2 - oy), dy * (x2 - ox)
+    after = left_term - right_term
+    is_unsure |= np.abs(after) <= ERROR_BOUND * (np.abs(left_term) + np.abs(right_term))
+    left_term, right_term = vx * ey, vy * ex
+    h = left_term - right_term
+    is_unsure |= np.abs(h) <= 2.0 * ERROR_BOUND * (np.abs(left_term) + np.abs(right_term))
+    is_hit = ((before > 0.0) != (after > 0.0)) & ((h > 0.0) == (after > 0.0)) & ~is_unsure
     inverse = dx * (ey / (h + NOTHING)) - dy * (ex / (h + NOTHING))
     m = np.abs(vx) + np.abs(vy)
-    plain = (inverse > 0.0) & (length * (m * inverse + 1.0) <= LIMIT * np.abs(h) * (inverse * inverse))
-    np.maximum(best, np.where(hit & plain, inverse, 0.0).max(axis=1, initial=0.0), out=best)
-    for beam, k in np.argwhere(unsure | (hit & ~plain)).tolist():
+    is_double_enough = (inverse > 0.0) & (length * (m * inverse + 1.0) <= LIMIT * np.abs(h) * (inverse * inverse))
+    np.maximum(best, np.where(is_hit & is_double_enough, inverse, 0.0).max(axis=1, initial=0.0), out=best)
+    for beam, k in np.argwhere(is_unsure | (is_hit & ~is_double_enough)).tolist():
         (o_x, o_y), (d_x, d_y) = origins[beam].tolist(), directions[beam].tolist()
         px, qx, py, qy, e_y, e_x, _ = walls[:, k].tolist()
         best[beam] = max(best[beam], wall_hit(d_x, d_y, o_x, o_y, px, py, qx, qy, e_x, e_y))
 
 
 def nearest(walls: Floats, circles: Floats, x: float, y: float) -> float:
-    """Return how far (x, y) is from the nearest wall or circle: see `shapes.nearest`."""
+    """Return the distance of (x, y) from the nearest wall or circle, as `shapes.nearest` does."""
     best = FAR
     if walls.shape[1]:
         vx, vy = x - walls[0], y - walls[2]
@@ -220,7 +221,7 @@ def nearest(walls: Floats, circles: Floats, x: float, y: float) -> float:
 def to_readings(
     ranges: Floats, noise: Floats, sigma: float, range_min: float, range_max: float, strengths: bool
 ) -> tuple[Float32s, Float32s]:
-    """Turn distances into float32 ranges and intensities: see `readings.to_readings`."""
+    """Convert distances to float32 ranges and intensities, as `readings.to_readings` does."""
     far = ranges > range_max
     if len(noise):
         ranges = ranges + sigma * noise
@@ -239,7 +240,7 @@ def to_readings(
 def advance_free(
     robot: Floats, v: float, w: float, ticks: int, dt: float, limits: Floats, drift: Floats, noise: Floats
 ) -> None:
-    """Do `motion.advance_free` on lists, which Python reads faster than arrays."""
+    """Call `motion.advance_free` with lists, whose items Python reads faster than those of arrays."""
     numbers: Any = robot.tolist()
     motion.advance_free(numbers, v, w, ticks, dt, limits.tolist(), drift.tolist(), noise.tolist())
     robot[:] = numbers

@@ -1,7 +1,7 @@
-"""The fast engine: the scalar sources compiled by numba, unchanged and without fast-math, so that no bit differs.
+"""The fast engine: the scalar sources, compiled by numba without changes and without fast-math, so that no bit differs.
 
-Machine code is kept in the user's cache folder (or in NUMBA_CACHE_DIR) under a hash of those sources: a change in
-any of them compiles anew, and an installation that can't be written to does not matter.
+The machine code is stored in the user's cache folder (or in NUMBA_CACHE_DIR) under a hash of these sources. So a change
+to any source recompiles all of them, and the installation may be read-only.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ def _compiler() -> Callable[[Any], Any]:
     digest = hashlib.sha256()
     for module in _SOURCES:
         digest.update(Path(str(module.__file__)).read_bytes())
-    home = os.environ.get("NUMBA_CACHE_DIR") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "sim"
-    folder = Path(home) / digest.hexdigest()[:16]
+    base = os.environ.get("NUMBA_CACHE_DIR") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "sim"
+    folder = Path(base) / digest.hexdigest()[:16]
 
-    def compiled(function: Any) -> Any:
-        before = numba.config.CACHE_DIR
+    def compile_function(function: Any) -> Any:
+        previous_folder = numba.config.CACHE_DIR
         try:
             numba.config.CACHE_DIR = str(folder)
             return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
-        except (OSError, RuntimeError):  # nowhere to write: compile once a process
+        except (OSError, RuntimeError):  # no writable cache: compile once in each process
             return numba.njit(error_model="numpy", nogil=True)(function)
         finally:
-            numba.config.CACHE_DIR = before
+            numba.config.CACHE_DIR = previous_folder
 
-    return compiled
+    return compile_function
 
 
 for _module in _SOURCES:
@@ -45,12 +45,12 @@ for _module in _SOURCES:
         if callable(_function) and getattr(_function, "__module__", "") == _module.__name__:
             register_jitable(_function)
 
-_compiled = _compiler()
-fan = _compiled(loops.fan)
-fan_in_grid = _compiled(traverse.fan_in_grid)
-rays = _compiled(traverse.rays)
-advance_free = _compiled(motion.advance_free)
-advance_near = _compiled(motion.advance_near)
-gap = _compiled(shapes.gap)
-to_readings = _compiled(readings.to_readings)
-nearest = _compiled(shapes.nearest)
+_compile = _compiler()
+fan = _compile(loops.fan)
+fan_in_grid = _compile(traverse.fan_in_grid)
+rays = _compile(traverse.rays)
+advance_free = _compile(motion.advance_free)
+advance_near = _compile(motion.advance_near)
+gap = _compile(shapes.gap)
+to_readings = _compile(readings.to_readings)
+nearest = _compile(shapes.nearest)

@@ -1,12 +1,12 @@
 """Signs and quotients of differences of products, without rounding errors that could matter.
 
-Which side of a beam a point lies on is the sign of a 2 x 2 determinant. Its double precision value is right
-unless it is within a few rounding errors of zero; only then is it summed again exactly, as an expansion (a sum of
-doubles that do not overlap). The building blocks are T. J. Dekker's and D. E. Knuth's error-free sums and products,
-the scheme of filter and expansion is J. R. Shewchuk's ("Adaptive precision floating-point arithmetic and fast
-robust geometric predicates", 1997).
+The side of a beam on which a point lies is the sign of a 2 x 2 determinant. Its double precision value has the right
+sign unless it is within a few rounding errors of zero. In that case it is summed again exactly, as an expansion (a sum
+of doubles that do not overlap). The building blocks are T. J. Dekker's and D. E. Knuth's error-free sums and products.
+The scheme of filter and expansion is J. R. Shewchuk's ("Adaptive precision floating-point arithmetic and fast robust
+geometric predicates", 1997).
 
-Everything here is plain Python on floats, and is compiled from this very source by the fast engine.
+Everything in this module is plain Python on floats, which the fast engine compiles.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ ERROR_BOUND = 8.9e-16
 
 
 def two_sum(a: float, b: float) -> tuple[float, float]:
-    """Return a + b rounded, and the error of that exactly."""
+    """Return a + b rounded, and its exact error."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
 
 
 def two_product(a: float, b: float) -> tuple[float, float]:
-    """Return a * b rounded, and the error of that exactly (for results that do not underflow)."""
+    """Return a * b rounded, and its exact error (for results that do not underflow)."""
     product = a * b
     big = SPLITTER * a
     a_high = big - (big - a)
@@ -46,10 +46,10 @@ def sign_of_sum(terms: NDArray[np.float64]) -> int:
     size = 0
     for term in terms:
         if term != 0.0:
-            rest = term
+            carry = term
             for index in range(size):
-                rest, terms[index] = two_sum(rest, terms[index])
-            terms[size] = rest
+                carry, terms[index] = two_sum(carry, terms[index])
+            terms[size] = carry
             size += 1
     for index in range(size - 1, -1, -1):
         if terms[index] > 0.0:
@@ -62,7 +62,7 @@ def sign_of_sum(terms: NDArray[np.float64]) -> int:
 def add_product(
     terms: NDArray[np.float64], at: int, a: float, a_low: float, b: float, b_low: float, sign: float
 ) -> None:
-    """Put the eight exact parts of sign * (a + a_low) * (b + b_low) into `terms` from `at` on."""
+    """Write the eight exact parts of sign * (a + a_low) * (b + b_low) to `terms`, from index `at` on."""
     terms[at], terms[at + 1] = two_product(sign * a, b)
     terms[at + 2], terms[at + 3] = two_product(sign * a, b_low)
     terms[at + 4], terms[at + 5] = two_product(sign * a_low, b)
@@ -88,7 +88,7 @@ def side(dx: float, dy: float, ox: float, oy: float, px: float, py: float) -> in
 
 
 def orientation(ox: float, oy: float, px: float, py: float, qx: float, qy: float) -> int:
-    """Return the exact sign of (p - o) x (q - o): 1 if o, p, q turn left, -1 if right, 0 if they are in one line."""
+    """Return the exact sign of (p - o) x (q - o): 1 if o, p, q turn left, -1 if right, 0 if they are collinear."""
     ax, ax_low = two_sum(px, -ox)
     ay, ay_low = two_sum(py, -oy)
     bx, bx_low = two_sum(qx, -ox)
@@ -100,7 +100,7 @@ def orientation(ox: float, oy: float, px: float, py: float, qx: float, qy: float
 
 
 def double_product(a: float, a_low: float, b: float, b_low: float) -> tuple[float, float]:
-    """Return (a + a_low)(b + b_low) as a double-double, to about 2**-104 of its size."""
+    """Return (a + a_low)(b + b_low) as a double-double, with a relative error of about 2**-104."""
     product, error = two_product(a, b)
     error += a * b_low + a_low * b
     return two_sum(product, error)
@@ -115,11 +115,11 @@ def double_difference(a: float, a_low: float, b: float, b_low: float) -> tuple[f
 
 
 def line_distance(dx: float, dy: float, ox: float, oy: float, px: float, py: float, qx: float, qy: float) -> float:
-    """Return how far along d from o the ray meets the wall p q, for a ray that is known to meet it.
+    """Return the distance along d from o at which the ray meets the wall p q, for a ray that is known to meet it.
 
-    In double-double arithmetic, for beams so nearly parallel to the wall, or walls so nearly in line with the
-    sensor, that a double is not enough. r = ((p - o) x e) / (d x e) with e = q - p; the result is kept between the
-    ends of the wall, where rounding, of a beam within 1e-30 of the parallel, could not be trusted to leave it.
+    It is computed in double-double arithmetic, for beams so nearly parallel to the wall, or walls so nearly in line
+    with the sensor, that a double is not enough. r = ((p - o) x e) / (d x e) with e = q - p. The result is clamped to
+    the ends of the wall, because rounding could move it beyond them for a beam within 1e-30 of the parallel.
     """
     vx, vx_low = two_sum(px, -ox)
     vy, vy_low = two_sum(py, -oy)
@@ -144,10 +144,10 @@ def line_distance(dx: float, dy: float, ox: float, oy: float, px: float, py: flo
 
 
 def circle_distance(dx: float, dy: float, ox: float, oy: float, cx: float, cy: float, radius: float) -> float:
-    """Return how far along d from o the ray meets the circle, o being outside it; -1 if it misses.
+    """Return the distance along d from o, outside the circle, at which the ray meets the circle; -1 if it misses it.
 
-    In double-double arithmetic, for beams so nearly tangent that a double is not enough. With s = d x (c - o) and
-    b = d . (c - o), |d| = 1 but for rounding, the ray meets the circle where r = b - sqrt(|d|² R² - s²), over |d|².
+    It is computed in double-double arithmetic, for beams so nearly tangent that a double is not enough. With
+    s = d x (c - o) and b = d . (c - o), and |d| = 1 apart from rounding, r = (b - sqrt(|d|² R² - s²)) / |d|².
     """
     vx, vx_low = two_sum(cx, -ox)
     vy, vy_low = two_sum(cy, -oy)

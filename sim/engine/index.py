@@ -1,4 +1,4 @@
-"""The walls of a world laid out for the engines: as columns, and above some 300 of them in a grid of cells."""
+"""The walls of a world in the form that engines need: as columns and, if there are many, also in a grid of cells."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MAX_WALLS_WITHOUT_GRID = 300
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """Square cells of `cell` metres from (`west`, `south`): `members[starts[i]:starts[i + 1]]` are in cell i."""
+    """Square cells of `cell` metres from (`west`, `south`). Cell i contains `members[starts[i]:starts[i + 1]]`."""
 
     starts: Integers
     members: Integers
@@ -29,7 +29,7 @@ class Grid:
 
 
 def layout(segments: Floats) -> Floats:
-    """Return the walls (N, 4) as the engines want them, (7, N): x1, x2, y1, y2, dy, dx, |dx| + |dy|."""
+    """Return the walls (N, 4) as columns (7, N) for the engines: x1, x2, y1, y2, dy, dx, |dx| + |dy|."""
     x1, y1, x2, y2 = segments.T
     ex, ey = x2 - x1, y2 - y1
     walls = np.ascontiguousarray(np.stack((x1, x2, y1, y2, ey, ex, np.abs(ex) + np.abs(ey))))
@@ -46,35 +46,35 @@ def grid_of(walls: Floats) -> Grid:
     cell = float(max(np.sqrt(width * height / walls.shape[1]), max(width, height) / 1000.0, 1e-3))
     columns, rows = int(width / cell) + 1, int(height / cell) + 1
 
-    # one entry for each wall and each column of cells that it passes through
+    # One entry for each wall and each column of cells that it passes through.
     left = np.clip(((np.minimum(x1, x2) - MARGIN - west) / cell).astype(np.int64), 0, columns - 1)
     right = np.clip(((np.maximum(x1, x2) + MARGIN - west) / cell).astype(np.int64), 0, columns - 1)
-    wall, column = _spread(left, right)
-    # where the wall is while it is in that column, from the wall's own ends where it is nearly upright
+    wall, column = _expand_ranges(left, right)
+    # The wall's range of y in this column. A nearly vertical wall has the range between its ends.
     ex, ey = x2 - x1, y2 - y1
-    upright = np.abs(ex) <= 1e-3
-    slope = np.divide(ey, ex, out=np.zeros_like(ex), where=~upright)
-    begin = west + cell * column - MARGIN
-    ya = y1[wall] + slope[wall] * (begin - x1[wall])
+    is_vertical = np.abs(ex) <= 1e-3
+    slope = np.divide(ey, ex, out=np.zeros_like(ex), where=~is_vertical)
+    column_start = west + cell * column - MARGIN
+    ya = y1[wall] + slope[wall] * (column_start - x1[wall])
     yb = ya + slope[wall] * (cell + 2 * MARGIN)
     low, high = np.minimum(y1, y2)[wall], np.maximum(y1, y2)[wall]
     slack = MARGIN + 1e-8 * np.abs(ey)[wall]
-    bottom = np.where(upright[wall], low, np.maximum(low, np.minimum(ya, yb))) - slack
-    top = np.where(upright[wall], high, np.minimum(high, np.maximum(ya, yb))) + slack
-    entry, row = _spread(
+    bottom = np.where(is_vertical[wall], low, np.maximum(low, np.minimum(ya, yb))) - slack
+    top = np.where(is_vertical[wall], high, np.minimum(high, np.maximum(ya, yb))) + slack
+    entry, row = _expand_ranges(
         np.clip(((bottom - south) / cell).astype(np.int64), 0, rows - 1),
         np.clip(((top - south) / cell).astype(np.int64), 0, rows - 1),
     )
-    place = row * columns + column[entry]
-    order = np.argsort(place, kind="stable")
+    cell_index = row * columns + column[entry]
+    order = np.argsort(cell_index, kind="stable")
     starts = np.zeros(columns * rows + 1, dtype=np.int64)
-    np.cumsum(np.bincount(place, minlength=columns * rows), out=starts[1:])
+    np.cumsum(np.bincount(cell_index, minlength=columns * rows), out=starts[1:])
     return Grid(starts, wall[entry][order], west, south, cell, columns, rows)
 
 
-def _spread(first: Integers, last: Integers) -> tuple[Integers, Integers]:
-    """Return (which, value) of all the integers from `first[which]` to `last[which]`, both included."""
+def _expand_ranges(first: Integers, last: Integers) -> tuple[Integers, Integers]:
+    """Return (index, value) for all integers from `first[index]` to `last[index]`, both included."""
     lengths = np.maximum(last - first + 1, 0)
-    which = np.repeat(np.arange(len(first)), lengths)
-    value = np.arange(len(which)) - np.repeat(lengths.cumsum() - lengths - first, lengths)
-    return which, value
+    index = np.repeat(np.arange(len(first)), lengths)
+    value = np.arange(len(index)) - np.repeat(lengths.cumsum() - lengths - first, lengths)
+    return index, value

@@ -1,7 +1,7 @@
-"""The scalar engine: whole scans as plain loops, compiled by numba, and by the array engine for its hard cases.
+"""The scalar engine: scans as plain loops, which numba compiles and which the array engine uses for its hard cases.
 
-A fan is a scan taken at one instant: a wall covers one contiguous run of its beams, found from the bearings of the
-wall's ends. The bearings are approximate; a beam so near an end that they could not tell is decided exactly.
+A fan is a scan measured at one instant. A wall covers one contiguous run of its beams, which is found from the bearings
+of the wall's ends. The bearings are approximate, so beams very near an end are decided exactly.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from sim.engine.trig import PI, TAU, sincos
 
 Floats = NDArray[np.float64]
 
-# How far, in radians, a bearing of `bearing` may be off; the beams within it of a wall's end are decided exactly.
+# The maximum error of `bearing` in radians. Beams within this angle of a wall's end are decided exactly.
 BEARING_ERROR = 4e-9
-# Keeps a wall whose ends are within rounding of one line with the sensor among the hard ones, however small it is.
+# Makes even the smallest wall a hard case if, apart from rounding, its ends are in line with the sensor.
 SMALL = 1e-9
 
 
@@ -54,9 +54,9 @@ def wall_into(
     zero: float,
     per_radian: float,
 ) -> None:
-    """Raise the inverse ranges `best` (beams,) to those of one wall, wherever it is nearer, deciding all doubts.
+    """Raise the inverse ranges `best` (beams,) to those of a wall where it is nearer. Each beam is decided exactly.
 
-    `directions` is (2, beams); `zero` the bearing of the first beam in the map; `per_radian` the beams in a radian.
+    `directions` is (2, beams), `zero` the bearing of the first beam in the map, and `per_radian` the beams per radian.
     """
     px, py, qx, qy, ex, ey = wall
     vx = px - ox
@@ -70,7 +70,7 @@ def wall_into(
     if abs(h) <= 2.0 * ERROR_BOUND * (abs(left) + abs(right)):
         turn = orientation(ox, oy, px, py, qx, qy)
     if turn == 0 and vx * wx + vy * wy <= 0.0:
-        best[:] = TOUCHING  # the sensor stands on the wall
+        best[:] = TOUCHING  # the sensor is on the wall
         return
     begin = bearing(vx, vy)
     end = bearing(wx, wy)
@@ -80,7 +80,7 @@ def wall_into(
     first = (begin - zero) * per_radian
     first -= full * math.floor(first / full)
     width = (end - begin) * per_radian
-    width -= full * math.floor(width / full + 0.25)  # from -1/4 to 3/4 of a turn: no wall seems wider than a half
+    width -= full * math.floor(width / full + 0.25)  # from -1/4 to 3/4 of a turn: a wall covers at most half a turn
     doubt = BEARING_ERROR * per_radian + 1e-12 * full
     count = best.shape[0]
     for lap in range(2):
@@ -108,7 +108,7 @@ def circle_into(
     zero: float,
     per_radian: float,
 ) -> None:
-    """Raise the inverse ranges `best` (beams,) to those of one solid circle, wherever it is nearer."""
+    """Raise the inverse ranges `best` (beams,) to those of a solid circle where the circle is nearer."""
     cx, cy, radius = circle
     vx = cx - ox
     vy = cy - oy
@@ -117,7 +117,7 @@ def circle_into(
         best[:] = TOUCHING
         return
     full = TAU * per_radian
-    # asin(t) <= pi/2 t: a run that is too long costs a few misses
+    # asin(t) <= pi/2 t, so the run may contain a few beams that miss the circle.
     half = 0.5 * PI * (radius / math.sqrt(squared)) * per_radian + 1.0
     middle = (bearing(vx, vy) - zero) * per_radian
     middle -= full * math.floor(middle / full)
@@ -140,9 +140,9 @@ def fan(
     per_radian: float,
     reach: float,
 ) -> Floats:
-    """Return the ranges (beams,) of a fan at (ox, oy) heading `yaw`, in metres; above `reach` they mean nothing.
+    """Return the ranges (beams,) of a fan at (ox, oy) with the heading `yaw`, in metres, valid up to `reach`.
 
-    `walls` is (7, N): x1, x2, y1, y2, y2 - y1, x2 - x1 and the sum of the last two's sizes.
+    `walls` is (7, N): x1, x2, y1, y2, y2 - y1, x2 - x1 and the sum of the absolute values of the last two.
     `circles` is (M, 3). `table` is (2, beams): the beams' directions in the sensor's frame.
     """
     s, c = sincos(yaw)
@@ -158,7 +158,7 @@ def fan(
     full = TAU * per_radian
     doubt = BEARING_ERROR * per_radian + 1e-12 * full
     plan = np.empty((5, size))
-    for k in range(size):  # no branches: this loop becomes vector instructions
+    for k in range(size):  # without branches, so that it is compiled to vector instructions
         vx = walls[0, k] - ox
         wx = walls[1, k] - ox
         vy = walls[2, k] - oy
@@ -187,14 +187,14 @@ def fan(
         width = plan[1, k]
         a = plan[2, k]
         b = plan[3, k]
-        hard = plan[4, k] != 0.0
+        is_hard = plan[4, k] != 0.0
         for lap in range(2):
             low = first - lap * full
             high = low + width
             start = math.ceil(low + doubt)
             stop = math.floor(high - doubt)
-            hard = hard or math.ceil(low - doubt) != start or math.floor(high + doubt) != stop
-        if hard:
+            is_hard = is_hard or math.ceil(low - doubt) != start or math.floor(high + doubt) != stop
+        if is_hard:
             wall = (walls[0, k], walls[2, k], walls[1, k], walls[3, k], walls[5, k], walls[4, k])
             wall_into(best, directions, ox, oy, wall, zero, per_radian)
             continue

@@ -1,8 +1,8 @@
-"""How a differential drive moves: exact arcs, limited accelerations, odometry that drifts, and contacts that stop it.
+"""The motion of a differential drive: exact arcs, limited accelerations, odometry that drifts, and contacts.
 
-A robot is a vector of 14 numbers: x, y, theta, v, w, then the odometry's x, y, theta, then the upper triangle of
-its covariance. During a tick v and w are constant, so that its path is an arc of a circle, whose chord is
-v dt sinc(w dt / 2) at the heading of half the turn. Plain Python throughout: the compiled engine compiles it.
+A robot is a vector of 14 numbers: x, y, theta, v, w, then the odometry's x, y, theta, then the upper triangle of its
+covariance. During a tick, v and w are constant, so its path is an arc of a circle, with the chord v dt sinc(w dt / 2)
+at the heading after half the turn. The code is plain Python, which the compiled engine compiles.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from sim.engine.trig import sinc, sincos, wrap
 
 Floats = NDArray[np.float64]
 
-# A contact is a gap of two skins; sliding along may wear it to one, and no motion makes a gap smaller than that.
+# The gap at a contact is two skins (m). Sliding may reduce it to one, but no motion makes a gap smaller than that.
 SKIN = 1e-6
-# How far a robot may move between two looks at what is around it, where something is near.
+# The minimum distance that a robot moves between two computations of the gap, in metres.
 STRIDE = 1e-3
-# How often the stretch in which a contact is, is halved; and the shares of it at which a robot is already stopped if it
-# leans on what it met before.
+# The number of bisections of an interval that contains a contact.
 HALVINGS = 39
-AT_ONCE = (0.5**39, 0.5**26, 0.5**13)
+# If the gap is too small at all these shares of the interval, the robot leans on the obstacle and stops at once.
+LEANING_SHARES = (0.5**39, 0.5**26, 0.5**13)
 
 Motion = tuple[float, float, float, float]
-"""Speeds v, m/s, and w, rad/s, along an arc, and besides a slip in x and in y, m/s."""
+"""The speeds along an arc, v in m/s and w in rad/s, and the slip in x and in y, in m/s."""
 
 
-def approach(value: float, target: float, most: float) -> float:
-    """Return `value` moved towards `target` by at most `most`."""
-    return value + min(max(target - value, -most), most)
+def approach(value: float, target: float, max_change: float) -> float:
+    """Return `value` moved towards `target` by at most `max_change`."""
+    return value + min(max(target - value, -max_change), max_change)
 
 
 def along_arc(x: float, y: float, theta: float, v: float, w: float, dt: float) -> tuple[float, float, float]:
-    """Return the pose after `dt` seconds at the constant speeds v and w: exact, whatever w is."""
+    """Return the pose after `dt` seconds at the constant speeds v and w. It is exact for any w."""
     half = 0.5 * (w * dt)
     s, c = sincos(theta + half)
     chord = v * dt * sinc(half)
@@ -46,13 +46,13 @@ def along_arc(x: float, y: float, theta: float, v: float, w: float, dt: float) -
 def measure(robot: Floats, ds: float, turn: float, drift: Floats, noise: Floats) -> None:
     """Add a motion of `ds` metres and `turn` radians to the odometry and its covariance.
 
-    `drift` holds the variances: of the distance per metre, of the turn per radian, of the turn per metre. `noise`
-    holds two standard normal numbers. The covariance is propagated to first order about the measured motion.
+    `drift` contains the variances of the distance per metre, of the turn per radian and of the turn per metre. `noise`
+    contains two standard normal numbers. The covariance is propagated to first order about the measured motion.
     """
     distance_variance = drift[0] * abs(ds)
     turn_variance = drift[1] * abs(turn) + drift[2] * abs(ds)
-    noisy = distance_variance + turn_variance > 0.0
-    if noisy:
+    has_noise = distance_variance + turn_variance > 0.0
+    if has_noise:
         ds += math.sqrt(distance_variance) * noise[0]
         turn += math.sqrt(turn_variance) * noise[1]
     s, c = sincos(robot[7] + 0.5 * turn)
@@ -77,7 +77,7 @@ def measure(robot: Floats, ds: float, turn: float, drift: Floats, noise: Floats)
 def advance_free(
     robot: Floats, v: float, w: float, ticks: int, dt: float, limits: Floats, drift: Floats, noise: Floats
 ) -> None:
-    """Advance `robot` by `ticks` ticks of `dt` seconds towards the speeds v and w, where nothing is in its way.
+    """Advance `robot` by `ticks` ticks of `dt` seconds towards the speeds v and w, if no obstacle is near.
 
     `limits` are the largest speeds and accelerations, linear and angular: m/s, rad/s, m/s², rad/s². `noise` is
     (ticks, 2).
@@ -89,48 +89,48 @@ def advance_free(
         measure(robot, robot[3] * dt, robot[4] * dt, drift, noise[tick])
 
 
-def moved(x: float, y: float, theta: float, motion: Motion, t: float) -> tuple[float, float, float]:
+def pose_after(x: float, y: float, theta: float, motion: Motion, t: float) -> tuple[float, float, float]:
     """Return the pose after `t` seconds of a motion."""
     a, b, c = along_arc(x, y, theta, motion[0], motion[1], t)
     return a + motion[2] * t, b + motion[3] * t, c
 
 
 def sweep(
-    pose: Floats, motion: Motion, dt: float, keep: float, body: Floats, walls: Floats, circles: Floats, touch: Floats
+    pose: Floats, motion: Motion, dt: float, min_gap: float, body: Floats, walls: Floats, circles: Floats, touch: Floats
 ) -> float:
-    """Move `pose` (x, y, theta) until something is met; return the share of `dt` that went by, 1 if nothing was.
+    """Move `pose` (x, y, theta) until it meets an obstacle; return the share of `dt` until then, 1 if it meets none.
 
-    The gap to what is around is never let below `keep`, or below what it was. `body` is as in `shapes.gap`, which
-    fills `touch`.
+    The gap to the obstacles does not fall below `min_gap` or, if that is smaller, its initial value. `body` is the same
+    as in `shapes.gap`, which fills `touch`.
     """
     x, y, theta = pose[0], pose[1], pose[2]
-    left = gap(x, y, theta, body, walls, circles, touch)
-    keep = min(keep, left)
-    most = (abs(motion[0]) + abs(motion[2]) + abs(motion[3]) + abs(motion[1]) * body[0, 1]) * dt
-    done = 0.0
-    while done < 1.0 and most > 0.0:
-        high = min(done + max(left - SKIN, STRIDE) / most, 1.0)
-        a, b, c = moved(x, y, theta, motion, high * dt)
-        left = gap(a, b, c, body, walls, circles, touch)
-        if left >= keep:
+    current_gap = gap(x, y, theta, body, walls, circles, touch)
+    min_gap = min(min_gap, current_gap)
+    max_distance = (abs(motion[0]) + abs(motion[2]) + abs(motion[3]) + abs(motion[1]) * body[0, 1]) * dt
+    completed_share = 0.0
+    while completed_share < 1.0 and max_distance > 0.0:
+        high = min(completed_share + max(current_gap - SKIN, STRIDE) / max_distance, 1.0)
+        a, b, c = pose_after(x, y, theta, motion, high * dt)
+        current_gap = gap(a, b, c, body, walls, circles, touch)
+        if current_gap >= min_gap:
             pose[0], pose[1], pose[2] = a, b, c
-            done = high
+            completed_share = high
             continue
-        met = touch[0]
-        leans = True
-        for share in AT_ONCE:
-            a, b, c = moved(x, y, theta, motion, (done + share * (high - done)) * dt)
-            leans = leans and gap(a, b, c, body, walls, circles, touch) < keep and touch[0] == met
-        for _ in range(0 if leans else HALVINGS):
-            share = 0.5 * (done + high)
-            a, b, c = moved(x, y, theta, motion, share * dt)
-            if gap(a, b, c, body, walls, circles, touch) >= keep:
+        obstacle = touch[0]
+        is_leaning = True
+        for share in LEANING_SHARES:
+            a, b, c = pose_after(x, y, theta, motion, (completed_share + share * (high - completed_share)) * dt)
+            is_leaning = is_leaning and gap(a, b, c, body, walls, circles, touch) < min_gap and touch[0] == obstacle
+        for _ in range(0 if is_leaning else HALVINGS):
+            share = 0.5 * (completed_share + high)
+            a, b, c = pose_after(x, y, theta, motion, share * dt)
+            if gap(a, b, c, body, walls, circles, touch) >= min_gap:
                 pose[0], pose[1], pose[2] = a, b, c
-                done = share
+                completed_share = share
             else:
                 high = share
         gap(pose[0], pose[1], pose[2], body, walls, circles, touch)
-        return done
+        return completed_share
     return 1.0
 
 
@@ -148,18 +148,18 @@ def advance_near(
     slide: bool,
     touch: Floats,
 ) -> bool:
-    """Advance `robot` by one tick where something is near; return whether it was in contact.
+    """Advance `robot` by one tick if an obstacle is near; return whether it was in contact.
 
-    After a contact a robot that stops turns on where it is, and one that slides keeps the part of its motion along
-    the obstacle. `touch` then tells of the contact (see `shapes.gap`), and its sixth number is the speed it was met
-    at.
+    After a contact, a robot that does not slide stops, but continues to turn in place. A robot that slides keeps the
+    part of its motion along the obstacle. `touch` then describes the contact (see `shapes.gap`), and its sixth number
+    is the speed of the impact.
     """
     robot[3] = approach(robot[3], min(max(v, -limits[0]), limits[0]), limits[2] * dt)
     robot[4] = approach(robot[4], min(max(w, -limits[1]), limits[1]), limits[3] * dt)
     v, w = robot[3], robot[4]
     pose = robot[:3]
     if gap(pose[0], pose[1], pose[2], body, walls, circles, touch) < 0.0:
-        # something has run into it; it may still get away
+        # A moving obstacle has run into the robot, which may still move away.
         touch[5] = abs(v)
         share = sweep(pose, (v, w, 0.0, 0.0), dt, 0.0, body, walls, circles, np.empty(6))
         if share < 1.0:
@@ -171,23 +171,25 @@ def advance_near(
         measure(robot, v * dt, w * dt, drift, noise)
         return False
     ds, turn = v * dt * share, w * dt * share
-    rest = dt * (1.0 - share)
+    remaining_time = dt * (1.0 - share)
     nx, ny = touch[3], touch[4]
     s, c = sincos(pose[2])
     sx = 0.0
     sy = 0.0
     if slide:
-        into = min(v * (c * nx + s * ny), 0.0)
-        sx = v * c - into * nx
-        sy = v * s - into * ny
-    spare = np.empty(6)
-    more = sweep(pose, (0.0, w, sx, sy), rest, SKIN, body, walls, circles, spare)
-    if more < 1.0 and slide:  # a corner: what is left is the turn
-        more = sweep(pose, (0.0, w, 0.0, 0.0), rest * (1.0 - more), SKIN, body, walls, circles, spare)
+        inward_speed = min(v * (c * nx + s * ny), 0.0)
+        sx = v * c - inward_speed * nx
+        sy = v * s - inward_speed * ny
+    unused_touch = np.empty(6)
+    further_share = sweep(pose, (0.0, w, sx, sy), remaining_time, SKIN, body, walls, circles, unused_touch)
+    if further_share < 1.0 and slide:  # in a corner, only the turn remains
+        further_share = sweep(
+            pose, (0.0, w, 0.0, 0.0), remaining_time * (1.0 - further_share), SKIN, body, walls, circles, unused_touch
+        )
         sx = 0.0
         sy = 0.0
     robot[3] = v if slide else 0.0
-    robot[4] = w if more == 1.0 else 0.0
-    measure(robot, ds + (c * sx + s * sy) * rest, turn + robot[4] * rest, drift, noise)
+    robot[4] = w if further_share == 1.0 else 0.0
+    measure(robot, ds + (c * sx + s * sy) * remaining_time, turn + robot[4] * remaining_time, drift, noise)
     touch[5] = abs(v)
     return True

@@ -1,12 +1,12 @@
-"""One beam and one wall, one beam and one pillar: the arithmetic that every engine must do in the same order.
+"""The range of one beam to one wall or one pillar, which every engine computes with the same operations in one order.
 
-A wall from p to q, seen from o along the unit vector d, is met at r = ((p - o) x e) / (d x e), e = q - p. Its inverse
-is linear in d: 1/r = dx A - dy B with A = ey / h, B = ex / h and h = (p - o) x e, so that the inner loops need no
-division, and the nearest of all walls is the largest inverse, in whatever order they are taken.
+A beam from o along the unit vector d meets a wall from p to q at r = ((p - o) x e) / (d x e), e = q - p. Its inverse is
+linear in d: 1/r = dx A - dy B with A = ey / h, B = ex / h and h = (p - o) x e. So the inner loops need no division, and
+the nearest wall has the largest inverse, in any order of the walls.
 
-A double is enough unless the beam grazes the wall or the wall is in line with the sensor: the error of r is below
-about 6 eps (m + r) r |e| / |h|, m the distance of p. `LIMIT` keeps that under 1e-12 m; beyond it the pair is worked
-out in double-double arithmetic (`exact.line_distance`). An inverse range of `TOUCHING` stands for a range of 0.
+A double is enough unless the beam grazes the wall or the wall is in line with the sensor. The error of r is below about
+6 eps (m + r) r |e| / |h|, where m is the distance of p. `LIMIT` keeps it below 1e-12 m. Beyond it, the pair is computed
+in double-double arithmetic (`exact.line_distance`). An inverse range of `TOUCHING` represents a range of 0.
 """
 
 from __future__ import annotations
@@ -16,8 +16,10 @@ import math
 from sim.engine.exact import ERROR_BOUND, circle_distance, line_distance, orientation, side
 
 LIMIT = 1000.0
+# A beam counts as nearly tangent to a circle if |R² - s²| is below this share of R² |c - o|².
 TANGENT = 1e-6
 TOUCHING = 1e300
+# The inverse range of a beam that meets nothing. It also keeps quotients finite.
 NOTHING = 1e-300
 
 
@@ -49,7 +51,7 @@ def wall_inverse(
 
 
 def circle_inverse(dx: float, dy: float, ox: float, oy: float, cx: float, cy: float, radius: float) -> float:
-    """Return the inverse range of a circle, o being outside it; 0 if the beam misses it."""
+    """Return the inverse range of a circle that does not contain o; 0 if the beam misses it."""
     vx = cx - ox
     vy = cy - oy
     along = dx * vx + dy * vy
@@ -78,7 +80,7 @@ def wall_hit(
     ex: float,
     ey: float,
 ) -> float:
-    """Return the inverse range of a wall, and 0 if the beam misses it; whether it does is decided exactly."""
+    """Return the inverse range of a wall, or 0 if the beam misses it. Whether it does is decided exactly."""
     before = side(dx, dy, ox, oy, px, py)
     after = side(dx, dy, ox, oy, qx, qy)
     if before * after > 0:
@@ -93,7 +95,7 @@ def wall_hit(
         turn = orientation(ox, oy, px, py, qx, qy)
     if turn == 0:
         if vx * (qx - ox) + vy * (qy - oy) <= 0.0:
-            return TOUCHING  # the sensor stands on the wall
+            return TOUCHING  # the sensor is on the wall
         if before != 0 or dx * vx + dy * vy < 0.0:
             return 0.0
     elif turn * before > 0 or turn * after < 0:

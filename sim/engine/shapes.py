@@ -1,7 +1,7 @@
-"""How far a footprint is from walls and circles, and where it is nearest.
+"""The distance of a footprint from walls and circles, and the nearest point.
 
-A body is an array of at least one row: `[radius, reach]` and then, for a polygonal footprint, its corners
-anticlockwise in `base_link`. `reach` is the distance of its farthest point from the centre.
+A body is an array of one or more rows: `[radius, reach]` and, for a polygonal footprint, its corners anticlockwise in
+`base_link`. `reach` is the distance of its farthest point from the centre.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ def nearest_on(px: float, py: float, qx: float, qy: float, x: float, y: float) -
     if squared == 0.0:
         return px, py
     t = min(max(((x - px) * ex + (y - py) * ey) / squared, 0.0), 1.0)
-    if t > 0.5:  # from the nearer end, so that neither end is missed by a rounding
+    if t > 0.5:  # computed from the nearer end, so that both ends are exact
         return qx - (1.0 - t) * ex, qy - (1.0 - t) * ey
     return px + t * ex, py + t * ey
 
 
 def distance(ax: float, ay: float, bx: float, by: float) -> float:
-    """Return the distance of two points: a square root, and no library's hypot."""
+    """Return the distance between two points, without a library's hypot, whose rounding may differ."""
     x = bx - ax
     y = by - ay
     return math.sqrt(x * x + y * y)
 
 
 def nearest(walls: Floats, circles: Floats, x: float, y: float) -> float:
-    """Return how far (x, y) is from the nearest wall or circle, in metres; `FAR` where there is none."""
+    """Return the distance of (x, y) from the nearest wall or circle, in metres; `FAR` if there is none."""
     best = FAR
     for k in range(walls.shape[1]):
         a, b = nearest_on(walls[0, k], walls[2, k], walls[1, k], walls[3, k], x, y)
@@ -50,10 +50,10 @@ def nearest(walls: Floats, circles: Floats, x: float, y: float) -> float:
 
 
 def gap(x: float, y: float, theta: float, body: Floats, walls: Floats, circles: Floats, touch: Floats) -> float:
-    """Return the distance in metres from the footprint at a pose to the nearest obstacle, below 0 inside one.
+    """Return the distance in metres from the footprint at a pose to the nearest obstacle, below 0 inside an obstacle.
 
-    `touch` (6,) gets the obstacle's number (walls first, then circles), its nearest point, and the direction from
-    there to the footprint.
+    The obstacle's number (walls first, then circles), its nearest point, and the direction from this point to the
+    footprint are written to `touch` (6,).
     """
     if len(body) > 1:
         return polygon_gap(x, y, theta, body, walls, circles, touch)
@@ -63,29 +63,29 @@ def gap(x: float, y: float, theta: float, body: Floats, walls: Floats, circles: 
     for k in range(walls.shape[1] + len(circles)):
         if k < walls.shape[1]:
             a, b = nearest_on(walls[0, k], walls[2, k], walls[1, k], walls[3, k], x, y)
-            apart = distance(a, b, x, y)
-            between = apart - radius
+            separation = distance(a, b, x, y)
+            clearance = separation - radius
         else:
             a, b, r = circles[k - walls.shape[1], 0], circles[k - walls.shape[1], 1], circles[k - walls.shape[1], 2]
-            apart = distance(a, b, x, y)
-            between = apart - radius - r
-            if apart > 0.0:
-                a, b = a + r * ((x - a) / apart), b + r * ((y - b) / apart)
-        if between < best:
-            best = between
+            separation = distance(a, b, x, y)
+            clearance = separation - radius - r
+            if separation > 0.0:
+                a, b = a + r * ((x - a) / separation), b + r * ((y - b) / separation)
+        if clearance < best:
+            best = clearance
             touch[0] = k
             touch[1] = a
             touch[2] = b
-            away = distance(a, b, x, y)
-            # inside a circle the way out is still away from its centre
-            sign = -1.0 if k >= walls.shape[1] and between + radius < 0.0 else 1.0
-            touch[3] = sign * (x - a) / away if away > 0.0 else 1.0
-            touch[4] = sign * (y - b) / away if away > 0.0 else 0.0
+            centre_distance = distance(a, b, x, y)
+            # Inside a circle, the direction out is also away from its centre.
+            sign = -1.0 if k >= walls.shape[1] and clearance + radius < 0.0 else 1.0
+            touch[3] = sign * (x - a) / centre_distance if centre_distance > 0.0 else 1.0
+            touch[4] = sign * (y - b) / centre_distance if centre_distance > 0.0 else 0.0
     return best
 
 
 def polygon_gap(x: float, y: float, theta: float, body: Floats, walls: Floats, circles: Floats, touch: Floats) -> float:
-    """Return what `gap` does, for a convex polygon."""
+    """Return the gap of a convex polygon, and fill `touch`, as `gap` does."""
     s, c = sincos(theta)
     count = len(body) - 1
     corners = np.empty((count + 1, 2))
@@ -95,51 +95,51 @@ def polygon_gap(x: float, y: float, theta: float, body: Floats, walls: Floats, c
     corners[count] = corners[0]
     best = FAR
     touch[0] = -1.0
-    found = np.empty(4)
+    contact = np.empty(4)
     for k in range(walls.shape[1] + len(circles)):
         if k < walls.shape[1]:
-            between = polygon_to_wall(corners, walls[0, k], walls[2, k], walls[1, k], walls[3, k], found)
+            clearance = polygon_to_wall(corners, walls[0, k], walls[2, k], walls[1, k], walls[3, k], contact)
         else:
             circle = circles[k - walls.shape[1]]
-            between = polygon_to_point(corners, circle[0], circle[1], found) - circle[2]
-            found[0] += circle[2] * found[2]
-            found[1] += circle[2] * found[3]
-        if between < best:
-            best = between
+            clearance = polygon_to_point(corners, circle[0], circle[1], contact) - circle[2]
+            contact[0] += circle[2] * contact[2]
+            contact[1] += circle[2] * contact[3]
+        if clearance < best:
+            best = clearance
             touch[0] = k
-            touch[1:5] = found
+            touch[1:5] = contact
     return best
 
 
-def polygon_to_point(corners: Floats, px: float, py: float, found: Floats) -> float:
-    """Return the distance of a point from a polygon, below 0 inside; `found`: the point, and the way from it."""
+def polygon_to_point(corners: Floats, px: float, py: float, contact: Floats) -> float:
+    """Return the distance of a point from a polygon, below 0 inside. `contact` gets the point and the direction."""
     best = FAR
     inside = True
-    found[0] = px
-    found[1] = py
-    found[2] = 1.0
-    found[3] = 0.0
+    contact[0] = px
+    contact[1] = py
+    contact[2] = 1.0
+    contact[3] = 0.0
     for i in range(len(corners) - 1):
         ax, ay, bx, by = corners[i, 0], corners[i, 1], corners[i + 1, 0], corners[i + 1, 1]
         if (bx - ax) * (py - ay) - (by - ay) * (px - ax) < 0.0:
             inside = False
         a, b = nearest_on(ax, ay, bx, by, px, py)
-        apart = distance(px, py, a, b)
-        if apart < best:
-            best = apart
-            if apart > 0.0:
-                found[2] = (a - px) / apart
-                found[3] = (b - py) / apart
+        separation = distance(px, py, a, b)
+        if separation < best:
+            best = separation
+            if separation > 0.0:
+                contact[2] = (a - px) / separation
+                contact[3] = (b - py) / separation
     if inside:
-        found[2] = -found[2]
-        found[3] = -found[3]
+        contact[2] = -contact[2]
+        contact[3] = -contact[3]
         return -best
     return best
 
 
-def polygon_to_wall(corners: Floats, px: float, py: float, qx: float, qy: float, found: Floats) -> float:
-    """Return the distance of a wall from a convex polygon; below 0, the depth by which they overlap."""
-    # separating axes: the polygon's normals and the wall's
+def polygon_to_wall(corners: Floats, px: float, py: float, qx: float, qy: float, contact: Floats) -> float:
+    """Return the distance of a wall from a convex polygon or, if they overlap, the negative depth of the overlap."""
+    # The separating axes are the normals of the polygon and of the wall.
     overlap = FAR
     for i in range(len(corners)):
         if i < len(corners) - 1:
@@ -152,40 +152,40 @@ def polygon_to_wall(corners: Floats, px: float, py: float, qx: float, qy: float,
             ny /= size
             low, high = FAR, -FAR
             for j in range(len(corners) - 1):
-                at = corners[j, 0] * nx + corners[j, 1] * ny
-                low = min(low, at)
-                high = max(high, at)
+                projection = corners[j, 0] * nx + corners[j, 1] * ny
+                low = min(low, projection)
+                high = max(high, projection)
             first, second = px * nx + py * ny, qx * nx + qy * ny
             forth = high - min(first, second)
             back = max(first, second) - low
             if min(forth, back) < overlap:
                 overlap = min(forth, back)
                 sign = -1.0 if forth < back else 1.0
-                found[2] = sign * nx
-                found[3] = sign * ny
+                contact[2] = sign * nx
+                contact[3] = sign * ny
     if overlap > 0.0:
-        found[0] = 0.5 * (px + qx)
-        found[1] = 0.5 * (py + qy)
+        contact[0] = 0.5 * (px + qx)
+        contact[1] = 0.5 * (py + qy)
         return -overlap
     best = FAR
     for i in range(len(corners) - 1):
         ax, ay, bx, by = corners[i, 0], corners[i, 1], corners[i + 1, 0], corners[i + 1, 1]
-        for which in range(3):
-            if which == 0:
+        for case in range(3):
+            if case == 0:
                 a, b = ax, ay
                 m, n = nearest_on(px, py, qx, qy, a, b)
-            elif which == 1:
+            elif case == 1:
                 m, n = px, py
                 a, b = nearest_on(ax, ay, bx, by, m, n)
             else:
                 m, n = qx, qy
                 a, b = nearest_on(ax, ay, bx, by, m, n)
-            apart = distance(m, n, a, b)
-            if apart < best:
-                best = apart
-                found[0] = m
-                found[1] = n
-                if apart > 0.0:
-                    found[2] = (a - m) / apart
-                    found[3] = (b - n) / apart
+            separation = distance(m, n, a, b)
+            if separation < best:
+                best = separation
+                contact[0] = m
+                contact[1] = n
+                if separation > 0.0:
+                    contact[2] = (a - m) / separation
+                    contact[3] = (b - n) / separation
     return best

@@ -1,8 +1,8 @@
-"""Beams one by one: from any origin in any direction, and through a grid of cells where there are many walls.
+"""Ranges of single beams, from any origin in any direction, and through a grid of cells if there are many walls.
 
-The grid holds, for each square cell, the walls that pass within `MARGIN` of it, so that a beam which rounding puts
-into the cell next door still finds its wall. A beam walks from cell to cell and stops once what it has met is nearer
-than the next cell: its cost is that of the free space in front of it, not that of the world.
+The grid contains, for each square cell, the walls that pass within `MARGIN` of it. So a beam still meets its wall if
+rounding puts it into the neighbouring cell. A beam is followed from cell to cell, until the wall that it has met is
+nearer than the next cell. The time depends on the free space in front of the beam, not on the size of the world.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 MARGIN = 1e-6
-FLAT = 1e-12  # a beam this near an axis stays in its column or row, to within the margin
+FLAT = 1e-12  # with a smaller component of its direction, a beam stays in its column or row, within the margin
 NEVER = 1e300
 
 
@@ -45,7 +45,7 @@ def rays(walls: Floats, circles: Floats, origins: Floats, directions: Floats) ->
     return ranges
 
 
-def walk(
+def follow_beam(
     walls: Floats,
     starts: Integers,
     members: Integers,
@@ -63,34 +63,34 @@ def walk(
     """Return the largest inverse range of the walls in the grid along one beam."""
     best = NOTHING
     x, y = ox - west, oy - south
-    wide, high = cell * columns, cell * rows
+    width, height = cell * columns, cell * rows
     per_x = 1.0 / dx if abs(dx) >= FLAT else 0.0
     per_y = 1.0 / dy if abs(dy) >= FLAT else 0.0
-    enter = 0.0
-    if x < 0.0 or x > wide or y < 0.0 or y > high:  # from outside: go to where the beam enters, if it does
-        leave = reach
-        for o, per, size in ((x, per_x, wide), (y, per_y, high)):
+    entry = 0.0
+    if x < 0.0 or x > width or y < 0.0 or y > height:  # outside the grid: start where the beam enters it
+        departure = reach
+        for o, per, size in ((x, per_x, width), (y, per_y, height)):
             if per != 0.0:
                 a, b = -o * per, (size - o) * per
-                enter = max(enter, min(a, b))
-                leave = min(leave, max(a, b))
+                entry = max(entry, min(a, b))
+                departure = min(departure, max(a, b))
             elif o < -MARGIN or o > size + MARGIN:
                 return best
-        if enter > leave + MARGIN:
+        if entry > departure + MARGIN:
             return best
     per_cell = 1.0 / cell
-    column = min(max(int((x + enter * dx) * per_cell), 0), columns - 1)
-    row = min(max(int((y + enter * dy) * per_cell), 0), rows - 1)
-    doubt = 4.0 * ERROR_BOUND * (abs(x) + abs(y) + wide + high)
-    right = 1 if dx > 0.0 else -1
-    ahead = 1 if dy > 0.0 else -1
-    across = (cell * (column + (right + 1) // 2) - x) * per_x if per_x != 0.0 else NEVER
-    up = (cell * (row + (ahead + 1) // 2) - y) * per_y if per_y != 0.0 else NEVER
+    column = min(max(int((x + entry * dx) * per_cell), 0), columns - 1)
+    row = min(max(int((y + entry * dy) * per_cell), 0), rows - 1)
+    doubt = 4.0 * ERROR_BOUND * (abs(x) + abs(y) + width + height)
+    column_step = 1 if dx > 0.0 else -1
+    row_step = 1 if dy > 0.0 else -1
+    next_column = (cell * (column + (column_step + 1) // 2) - x) * per_x if per_x != 0.0 else NEVER
+    next_row = (cell * (row + (row_step + 1) // 2) - y) * per_y if per_y != 0.0 else NEVER
     per_x = cell * abs(per_x)
     per_y = cell * abs(per_y)
     while True:
-        place = row * columns + column
-        for index in range(starts[place], starts[place + 1]):
+        cell_index = row * columns + column
+        for index in range(starts[cell_index], starts[cell_index + 1]):
             k = members[index]
             px, qx, py, qy = walls[0, k], walls[1, k], walls[2, k], walls[3, k]
             vx = px - ox
@@ -100,21 +100,21 @@ def walk(
             ey = walls[4, k]
             ex = walls[5, k]
             if (before > doubt and after > doubt) or (before < -doubt and after < -doubt):
-                continue  # most walls: both ends plainly on one side of the beam
+                continue  # the usual case: both ends are clearly on the same side of the beam
             h = vx * ey - vy * ex
             if min(abs(before), abs(after)) <= doubt or abs(h) <= doubt * walls[6, k]:
                 best = max(best, wall_hit(dx, dy, ox, oy, px, py, qx, qy, ex, ey))
             elif (h > 0.0) == (after > 0.0):
                 best = max(best, wall_inverse(dx, dy, ox, oy, px, py, qx, qy, ex, ey))
-        following = min(across, up)
-        if following > reach or following * best > 1.0 + MARGIN * best:
+        next_cell = min(next_column, next_row)
+        if next_cell > reach or next_cell * best > 1.0 + MARGIN * best:
             return best
-        if across < up:
-            column += right
-            across += per_x
+        if next_column < next_row:
+            column += column_step
+            next_column += per_x
         else:
-            row += ahead
-            up += per_y
+            row += row_step
+            next_row += per_y
         if column < 0 or column >= columns or row < 0 or row >= rows:
             return best
 
@@ -137,7 +137,7 @@ def fan_in_grid(
     per_radian: float,
     reach: float,
 ) -> Floats:
-    """Return the ranges of a fan, as `loops.fan` does, through the grid of `index.Grid`."""
+    """Return the ranges of a fan, as `loops.fan` does, but with the walls sorted into an `index.Grid`."""
     s, c = sincos(yaw)
     count = table.shape[1]
     directions = np.empty((2, count))
@@ -147,7 +147,7 @@ def fan_in_grid(
         dy = s * table[0, beam] + c * table[1, beam]
         directions[0, beam] = dx
         directions[1, beam] = dy
-        best[beam] = walk(walls, starts, members, west, south, cell, columns, rows, ox, oy, dx, dy, reach)
+        best[beam] = follow_beam(walls, starts, members, west, south, cell, columns, rows, ox, oy, dx, dy, reach)
     for k in range(len(circles)):
         circle_into(
             best, directions, ox, oy, (circles[k, 0], circles[k, 1], circles[k, 2]), yaw + angle_min, per_radian

@@ -1,8 +1,8 @@
-"""Sine and cosine from correctly rounded operations alone, so that every machine gets the same bits.
+"""Sine and cosine, computed only with correctly rounded operations, so that every machine computes the same bits.
 
-A C library may compute sin and cos one way on a processor with fused multiply-add and another way without it, and
-the last bit differs. Addition, multiplication and flooring of doubles are the same everywhere (IEEE 754), and the
-functions here use nothing else. They are plain Python: the compiled engine compiles this very source.
+The sin and cos of a C library may differ in the last bit between processors with and without fused multiply-add.
+Addition, multiplication and flooring of doubles are the same everywhere (IEEE 754), and the functions in this module
+use no other operations. They are plain Python, which the compiled engine compiles.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 TWO_OVER_PI = 0.6366197723675814
-# pi/2 in three parts; multiples below 2**20 of the first two are exact (reduction after Cody and Waite).
+# pi/2 in three parts. Multiples below 2**20 of the first two are exact (Cody and Waite's reduction).
 HALF_PI_1 = 1.5707963267341256
 HALF_PI_2 = 6.077100506303966e-11
 HALF_PI_3 = 2.0222662487959506e-21
@@ -82,7 +82,7 @@ def sincos(angle: float) -> tuple[float, float]:
 
 
 def sinc(x: float) -> float:
-    """Return sin(x)/x, and 1 at 0: the chord of an arc over its length, x being half the turn."""
+    """Return sin(x)/x, and 1 at 0. It is the ratio of an arc's chord to its length if x is half the turn."""
     if -0.75 < x < 0.75:
         return sine(x * x)
     return sincos(x)[0] / x
@@ -92,5 +92,5 @@ def wrap(angle: float) -> float:
     """Return `angle` as the same heading in [-pi, pi)."""
     if -PI <= angle < PI:
         return angle
-    wrapped = angle - TAU * math.floor((angle + PI) / TAU)
-    return wrapped if wrapped < PI else -PI
+    wrapped_angle = angle - TAU * math.floor((angle + PI) / TAU)
+    return wrapped_angle if wrapped_angle < PI else -PI

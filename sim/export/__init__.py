@@ -1,9 +1,10 @@
-"""A recording for others: a GIF or MP4 for a slide, an HTML page for a browser, a rosbag2 (mcap) for ROS tools.
+"""Exports a recording as a GIF or MP4 for slides, an HTML page for a browser, or a rosbag2 (mcap) for ROS tools.
 
     >>> from sim.export import to_gif, to_html, to_mcap, to_mp4
     >>> to_html(recording, "run.html")
 
-`to_mcap` needs the extra `export`, and `to_mp4` the program ffmpeg. All but it give the same bytes for the same run.
+`to_mcap` needs the extra `export`, and `to_mp4` the program ffmpeg. All except `to_mp4` write the same bytes for the
+same run.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ def to_gif(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: f
 
     Args:
         recording: the run.
-        path: of the GIF.
-        speed: simulated seconds in a second.
-        fps: frames a second.
+        path: the path of the GIF.
+        speed: simulated seconds per second.
+        fps: frames per second.
 
     Raises:
-        ExportError: the speed or the frame rate makes no sense, or there are more frames than a GIF should have.
+        ExportError: the speed or the frame rate is invalid, or a GIF would have too many frames.
     """
     from sim.export.gif import write_gif
 
@@ -39,12 +40,12 @@ def to_mp4(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: f
 
     Args:
         recording: the run.
-        path: of the MP4.
-        speed: simulated seconds in a second.
-        fps: frames a second.
+        path: the path of the MP4.
+        speed: simulated seconds per second.
+        fps: frames per second.
 
     Raises:
-        ExportError: there is no ffmpeg, or it fails, or the speed or the frame rate makes no sense.
+        ExportError: ffmpeg is not installed or fails, or the speed or the frame rate is invalid.
     """
     from sim.export.video import write_video
 
@@ -52,7 +53,7 @@ def to_mp4(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: f
 
 
 def to_html(recording: Recording, path: str | Path) -> Path:
-    """Write one HTML file, with nothing to load from elsewhere, that plays the run; return the path."""
+    """Write a self-contained HTML file that plays the run; return the path."""
     from sim.export.page import write_page
 
     return write_page(recording, Path(path))
@@ -62,7 +63,7 @@ def to_mcap(recording: Recording, path: str | Path) -> Path:
     """Write a rosbag2 folder with /scan, /odom, /cmd_vel and /clock in one mcap file; return the path.
 
     Raises:
-        ExportError: if `rosbags` is not installed, or there is something at `path` already.
+        ExportError: `rosbags` is not installed, or `path` already exists.
     """
     from sim.export.bag import write_bag
 
@@ -70,23 +71,23 @@ def to_mcap(recording: Recording, path: str | Path) -> Path:
 
 
 def export(recording: Recording, path: str | Path, **options: float) -> Path:
-    """Write `recording` as the ending of `path` says: .gif, .mp4, .html, or .mcap for a rosbag2 folder without it.
+    """Write `recording` in the format of the suffix of `path`: .gif, .mp4, .html, or .mcap for a rosbag2 folder.
 
     Args:
         recording: the run.
-        path: of what is written.
+        path: the path of the export. The name of a rosbag2 folder does not include the suffix.
         options: `speed` and `fps` of a GIF or an MP4.
 
     Raises:
-        ExportError: for another ending, or options that it has no use for.
+        ExportError: the suffix is unknown, or the format does not have the options.
     """
-    films: dict[str, Callable[..., Path]] = {".gif": to_gif, ".mp4": to_mp4}
-    kinds: dict[str, Callable[..., Path]] = {**films, ".html": to_html, ".mcap": to_mcap}
+    videos: dict[str, Callable[..., Path]] = {".gif": to_gif, ".mp4": to_mp4}
+    writers: dict[str, Callable[..., Path]] = {**videos, ".html": to_html, ".mcap": to_mcap}
     path = Path(path)
-    write = kinds.get(path.suffix.lower())
+    write = writers.get(path.suffix.lower())
     if write is None:
-        ending = path.suffix or "a name without an ending"
-        raise ExportError(f"{path}: can't export to {ending!r}: use .gif, .mp4, .html or .mcap")
-    if options and path.suffix.lower() not in films:
+        suffix = path.suffix or "a name without an ending"
+        raise ExportError(f"{path}: can't export to {suffix!r}: use .gif, .mp4, .html or .mcap")
+    if options and path.suffix.lower() not in videos:
         raise ExportError(f"{path}: only a .gif or .mp4 has {' and '.join(sorted(options))}: leave it out")
     return write(recording, path, **options)

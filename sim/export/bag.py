@@ -1,4 +1,4 @@
-"""A rosbag2 folder with one mcap file, written without ROS by the library `rosbags`."""
+"""Writes a rosbag2 folder with one mcap file, using the library `rosbags` instead of ROS."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from sim.state import RobotState
 PLANAR = (0, 1, 5)  # x, y and yaw among the six axes of a covariance
 
 Row = tuple[int, int, str, str, Any]
+"""The time in ns, the order among rows of the same time, the topic, the type, and the value of a message."""
 
 
 def write_bag(recording: Recording, path: Path) -> Path:
@@ -32,8 +33,8 @@ def write_bag(recording: Recording, path: Path) -> Path:
     folder = path.with_suffix("") if path.suffix == ".mcap" else path
     if folder.exists():
         raise ExportError(f"{folder}: there is something already: remove it, or give another name")
-    store = get_typestore(Stores.LATEST)  # what a bag holds is the same in each distribution since ROS 2 Foxy
-    forever = QosTime(2147483647, 4294967295)
+    store = get_typestore(Stores.LATEST)  # these messages are the same in each distribution since ROS 2 Foxy
+    infinite_time = QosTime(2147483647, 4294967295)
 
     def qos(reliability: Any, depth: int) -> Any:
         return Qos(
@@ -41,29 +42,29 @@ def write_bag(recording: Recording, path: Path) -> Path:
             depth=depth,
             reliability=reliability,
             durability=QosDurability.VOLATILE,
-            deadline=forever,
-            lifespan=forever,
+            deadline=infinite_time,
+            lifespan=infinite_time,
             liveliness=QosLiveliness.AUTOMATIC,
-            liveliness_lease_duration=forever,
+            liveliness_lease_duration=infinite_time,
             avoid_ros_namespace_conventions=False,
         )
 
     folder.parent.mkdir(parents=True, exist_ok=True)
     with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         connections: dict[str, Any] = {}
-        maker = _Maker(store.types)
+        factory = _MessageFactory(store.types)
         for time_ns, _, topic, kind, value in _rows(recording):
             if topic not in connections:
                 reliability = QosReliability.BEST_EFFORT if kind.endswith("LaserScan") else QosReliability.RELIABLE
                 profile = qos(reliability, 5 if kind.endswith("LaserScan") else 10)
                 connections[topic] = writer.add_connection(topic, kind, typestore=store, offered_qos_profiles=[profile])
-            message = maker.message(kind, value, topic.rpartition("/")[0].strip("/"))
+            message = factory.message(kind, value, topic.rpartition("/")[0].strip("/"))
             writer.write(connections[topic], time_ns, store.serialize_cdr(message, kind))
     return folder
 
 
 def _rows(recording: Recording) -> Iterator[Row]:
-    """Yield all messages in the order of their time; at one time the clock first, then command, odometry, scan."""
+    """Yield all messages, ordered by time. Those of one time are in the order clock, command, odometry, scan."""
     return heapq.merge(*_streams(recording), key=lambda row: row[:2])
 
 
@@ -78,7 +79,7 @@ def _streams(recording: Recording) -> Iterator[Iterator[Row]]:
 
 
 def _commands(recording: Recording, index: int, topic: str) -> Iterator[Row]:
-    """A command stands in the row it led to; it was given at the time of the row before."""
+    """Yield the commands. Each is in the row of the state it led to, and was sent at the time of the previous row."""
     for row in range(1, len(recording)):
         linear, angular = recording.commands[row, index].tolist()
         if not np.isnan(linear):
@@ -97,8 +98,8 @@ def _scans(recording: Recording, index: int, topic: str) -> Iterator[Row]:
         yield int(recording.times_ns[row]), 3, topic, "sensor_msgs/msg/LaserScan", scan
 
 
-class _Maker:
-    """Makes messages of the typestore's classes, which are not rclpy's."""
+class _MessageFactory:
+    """Creates messages of the typestore's classes, which are not those of rclpy."""
 
     def __init__(self, types: Any) -> None:
         self._types = types
@@ -128,11 +129,11 @@ class _Maker:
 
     def _odometry(self, time_ns: int, robot: RobotState, prefix: str) -> Any:
         types = self._types
-        where = robot.odometry
+        odometry = robot.odometry
         covariance = np.zeros((6, 6))
         covariance[np.ix_(PLANAR, PLANAR)] = np.reshape(robot.covariance, (3, 3))
-        turn = types["geometry_msgs/msg/Quaternion"](0.0, 0.0, np.sin(where.theta / 2), np.cos(where.theta / 2))
-        pose = types["geometry_msgs/msg/Pose"](types["geometry_msgs/msg/Point"](where.x, where.y, 0.0), turn)
+        turn = types["geometry_msgs/msg/Quaternion"](0.0, 0.0, np.sin(odometry.theta / 2), np.cos(odometry.theta / 2))
+        pose = types["geometry_msgs/msg/Pose"](types["geometry_msgs/msg/Point"](odometry.x, odometry.y, 0.0), turn)
         return types["nav_msgs/msg/Odometry"](
             self._header(time_ns, f"{prefix}odom"),
             f"{prefix}base_link",

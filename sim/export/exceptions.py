@@ -1,7 +1,7 @@
-"""What goes wrong when a recording is exported: a SimError, so that one `except` catches all of the simulator's."""
+"""The exception that exports raise: a SimError, so that one `except` catches all exceptions of the simulator."""
 
 from sim.exceptions import SimError
 
 
 class ExportError(SimError):
-    """A recording that can't be written as asked. The message says what to do."""
+    """A recording cannot be exported as requested. The message says what to do."""

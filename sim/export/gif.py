@@ -1,4 +1,4 @@
-"""An animated GIF: the live view's frames, one palette for all of them."""
+"""Writes an animated GIF of the live view's frames, with one palette for all frames."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MAX_FRAMES = 2000
 
 def write_gif(recording: Recording, path: Path, speed: float, fps: float) -> Path:
     """Write the frames of `recording`; see `sim.export.to_gif`."""
-    require_pace(recording, path, speed, fps, most=MAX_FRAMES)
+    require_pace(recording, path, speed, fps, max_frames=MAX_FRAMES)
     images = list(frames_of(recording, speed, fps, dpi=72))
     palette = images[-1].quantize(64, dither=Image.Dither.NONE)
     frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]

@@ -1,6 +1,6 @@
-"""One HTML file that plays a run: the player of `sim.view`, on a page of its own.
+"""Writes an HTML file in which the player of `sim.view` shows a run.
 
-It loads nothing, so that it opens from a disk or an e-mail. It stands still until it is asked to play.
+The page loads nothing, so that it can be opened from a disk or an e-mail. The run does not start to play by itself.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""An MP4 of the live view's frames, encoded by the program ffmpeg."""
+"""Writes an MP4 of the live view's frames, which the program ffmpeg encodes."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ MAX_FRAMES = 100_000
 
 def write_video(recording: Recording, path: Path, speed: float, fps: float) -> Path:
     """Write the frames of `recording`; see `sim.export.to_mp4`."""
-    require_pace(recording, path, speed, fps, most=MAX_FRAMES)
+    require_pace(recording, path, speed, fps, max_frames=MAX_FRAMES)
     program = shutil.which("ffmpeg")
     if program is None:
         raise ExportError(f"{path}: an MP4 needs the program ffmpeg: install it, or export a .gif or .html")
     path.parent.mkdir(parents=True, exist_ok=True)
     images = frames_of(recording, speed, fps, dpi=100)
     first = next(images)
-    # Players on telephones and in slides read H.264 with even sides and half the colours.
+    # Players on telephones and in slides need H.264 with even sides and halved colour resolution.
     command = [program, "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"]
     command += ["-s", f"{first.width}x{first.height}", "-r", f"{fps:g}", "-i", "-"]
     command += ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-pix_fmt", "yuv420p"]
@@ -35,7 +35,7 @@ def write_video(recording: Recording, path: Path, speed: float, fps: float) -> P
                 encoder.stdin.write(image.tobytes())
             encoder.stdin.close()
         except BrokenPipeError:
-            pass  # its own words say why
+            pass  # ffmpeg has ended; its error output explains why
         reason = encoder.stderr.read().decode(errors="replace").strip()
     if encoder.returncode != 0:
         raise ExportError(f"{path}: ffmpeg ended with status {encoder.returncode}: {reason}")

@@ -1,4 +1,4 @@
-"""A world as an occupancy grid, as a map_server would publish it: the inverse of reading a map."""
+"""Converts a world to an occupancy grid, as a map_server publishes it: the inverse of reading a map."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ class Grid:
 
 
 def grid_of(world: World, resolution: float = 0.05) -> Grid:
-    """Draw the walls and circles of a world into a grid; what no robot can see from a start pose is unknown.
+    """Return a grid with the walls and circles of a world. Cells that cannot be reached from a start are unknown.
 
-    Moving obstacles are no part of a map. Each cell that a wall goes through is occupied.
+    Moving obstacles are not part of a map. Each cell that a wall passes through is occupied.
 
     Raises:
         WorldError: the grid would have more than `MAX_CELLS` cells.
@@ -55,19 +55,19 @@ def grid_of(world: World, resolution: float = 0.05) -> Grid:
     grid = Grid(np.full((rows, columns), UNKNOWN, dtype=np.int8), resolution, x, y)
     for x1, y1, x2, y2 in world.segments.reshape(-1, 4).tolist():
         cuts = np.unique(np.concatenate([[0.0, 1.0], _cuts(x1, x2, x, resolution), _cuts(y1, y2, y, resolution)]))
-        shares = (cuts[1:] + cuts[:-1]) / 2  # one in each cell that the wall goes through
+        shares = (cuts[1:] + cuts[:-1]) / 2  # the middle of the part of the wall in each cell that it passes through
         _occupy(grid, x1 + shares * (x2 - x1), y1 + shares * (y2 - y1))
     for centre_x, centre_y, radius in world.circles.tolist():
         count = 8 + math.ceil(4 * math.tau * radius / resolution)
         angle = np.linspace(0.0, math.tau, count)
         _occupy(grid, centre_x + radius * np.cos(angle), centre_y + radius * np.sin(angle))
     for start in world.starts:
-        _free(grid.cells, grid.cell_of(start.x, start.y))
+        _mark_free(grid.cells, grid.cell_of(start.x, start.y))
     return grid
 
 
 def _cuts(start: float, end: float, origin: float, resolution: float) -> npt.NDArray[np.float64]:
-    """Return where a wall crosses the grid's lines of one direction, as shares of its length."""
+    """Return the points at which a wall crosses the grid's lines of one direction, as shares of its length."""
     if start == end:
         return np.empty(0)
     low, high = sorted((start, end))
@@ -81,12 +81,12 @@ def _occupy(grid: Grid, x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]) 
     grid.cells[rows, columns] = OCCUPIED
 
 
-def _free(cells: npt.NDArray[np.int8], start: tuple[int, int]) -> None:
-    """Mark as free what can be reached from a cell without a diagonal step."""
+def _mark_free(cells: npt.NDArray[np.int8], start: tuple[int, int]) -> None:
+    """Mark as free all cells that can be reached from `start` without a diagonal step."""
     rows, columns = cells.shape
-    waiting = deque([start])
-    while waiting:
-        row, column = waiting.popleft()
+    pending = deque([start])
+    while pending:
+        row, column = pending.popleft()
         if 0 <= row < rows and 0 <= column < columns and cells[row, column] == UNKNOWN:
             cells[row, column] = FREE
-            waiting.extend(((row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)))
+            pending.extend(((row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)))

@@ -1,4 +1,4 @@
-"""The YAML file of a ROS map: read by the rules of nav2's map_server, each fault named with its line."""
+"""Reads the YAML file of a ROS map by the rules of nav2's map_server. Errors name the line."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ REQUIRED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh", "
 
 @dataclass(frozen=True)
 class MapFile:
-    """What a map_server YAML says: `image` is a full path, `resolution` metres a cell.
+    """The fields of a map_server YAML file. `image` is a full path, and `resolution` is in metres per cell.
 
-    `origin` is the pose (m, m, rad) of the picture's lower left corner in the frame `map`; a cell is occupied above
-    `occupied_thresh`, free below `free_thresh`, both shares of 1.
+    `origin` is the pose (m, m, rad) of the picture's lower left corner in the frame `map`. A cell is occupied above
+    `occupied_thresh` and free below `free_thresh`, both from 0 to 1.
     """
 
     path: Path
@@ -38,7 +38,7 @@ def read_map_file(path: Path) -> MapFile:
     """Read the YAML of a map.
 
     Raises:
-        WorldError: naming the file, the line, what is wrong and what to do.
+        WorldError: the file cannot be read or is invalid.
     """
     fields = _Fields(path, _compose(path))
     fields.require(*REQUIRED)
@@ -49,10 +49,12 @@ def read_map_file(path: Path) -> MapFile:
     resolution = fields.number("resolution")
     if not 1e-4 <= resolution <= 100.0:
         raise fields.error("resolution", f"a cell of {resolution:g} m makes no map", "Give metres a cell, like 0.05")
-    occupied, free = fields.share("occupied_thresh"), fields.share("free_thresh")
-    if free >= occupied:
+    occupied_thresh, free_thresh = fields.share("occupied_thresh"), fields.share("free_thresh")
+    if free_thresh >= occupied_thresh:
         raise fields.error(
-            "free_thresh", f"free_thresh {free:g} is not below occupied_thresh {occupied:g}", "Lower it, 0.25 is usual"
+            "free_thresh",
+            f"free_thresh {free_thresh:g} is not below occupied_thresh {occupied_thresh:g}",
+            "Lower it, 0.25 is usual",
         )
     negate = fields.text("negate").lower()
     if negate not in ("0", "1", "true", "false"):
@@ -62,15 +64,15 @@ def read_map_file(path: Path) -> MapFile:
         image=path.parent / image,
         resolution=resolution,
         origin=fields.triple("origin"),
-        occupied_thresh=occupied,
-        free_thresh=free,
+        occupied_thresh=occupied_thresh,
+        free_thresh=free_thresh,
         negate=negate in ("1", "true"),
         mode=mode,
     )
 
 
 def is_map_file(path: Path) -> bool:
-    """Say whether `path` is a YAML file with the key that only a map has: 'image'. False for what can't be read."""
+    """Return whether `path` is a readable YAML file with the key 'image', which only a map has."""
     try:
         node = _compose(path)
     except WorldError:
@@ -100,7 +102,7 @@ def _compose(path: Path) -> yaml.MappingNode:
 
 
 class _Fields:
-    """The top-level keys of a YAML file, each with its line."""
+    """The top-level keys of a YAML file, with their lines."""
 
     def __init__(self, path: Path, node: yaml.MappingNode) -> None:
         self._path = path
@@ -118,9 +120,11 @@ class _Fields:
         return WorldError(problem, remedy, path=str(self._path), line=line)
 
     def require(self, *keys: str) -> None:
-        missing = [key for key in keys if key not in self._nodes]
-        if missing:
-            raise self.error("", f"{', '.join(repr(key) for key in missing)} missing", "Add it, as map_server wants it")
+        missing_keys = [key for key in keys if key not in self._nodes]
+        if missing_keys:
+            raise self.error(
+                "", f"{', '.join(repr(key) for key in missing_keys)} missing", "Add it, as map_server wants it"
+            )
 
     def text(self, key: str, default: str = "") -> str:
         node = self._nodes.get(key)

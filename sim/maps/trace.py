@@ -1,8 +1,8 @@
-"""From cells to walls: the outline of a grid's occupied cells, as directed segments.
+"""Converts cells to walls: traces the outline of a grid's occupied cells as directed segments.
 
-An occupied region is drawn by the edges between an occupied cell and one that is not. Walked with the occupied side
-on the left they close into loops, outer ones anticlockwise and holes clockwise; collinear edges become one segment.
-The result is exact: a point is inside a wall of the grid if and only if it is inside the outline.
+The outline consists of the edges between an occupied cell and one that is not. With the occupied side on the left, they
+form closed loops, outer ones anticlockwise and holes clockwise. Collinear edges are joined to one segment. The result
+is exact: a point is inside an occupied cell if and only if it is inside the outline.
 """
 
 from __future__ import annotations
@@ -24,42 +24,45 @@ _STEP = ((1, 0), (0, 1), (-1, 0), (0, -1))
 
 
 def count_edges(occupied: Grid) -> int:
-    """Return how many unit edges the outline of `occupied` (H, W) has."""
-    padded = np.pad(occupied, 1)
-    return int((padded[1:] != padded[:-1]).sum() + (padded[:, 1:] != padded[:, :-1]).sum())
+    """Return the number of unit edges in the outline of `occupied` (H, W)."""
+    padded_cells = np.pad(occupied, 1)
+    return int((padded_cells[1:] != padded_cells[:-1]).sum() + (padded_cells[:, 1:] != padded_cells[:, :-1]).sum())
 
 
 def trace_loops(occupied: Grid) -> list[Loop]:
-    """Return the closed outlines of the occupied cells, corners only.
+    """Return the closed outlines of the occupied cells, as corners.
 
     `occupied` is (H, W), row 0 the lowest (y grows with the row). Each loop is (K, 2) float64 corners in cells, x then
-    y, first corner not repeated. Two cells that touch at a corner only are kept apart.
+    y, without repeating the first. Two cells that touch only at a corner belong to separate loops.
     """
     edges = _directed_edges(occupied)
-    unseen = {(corner, direction) for corner, directions in edges.items() for direction in directions}
+    remaining_edges = {(corner, direction) for corner, directions in edges.items() for direction in directions}
     loops = []
     for corner, directions in edges.items():
         for direction in directions:
-            if (corner, direction) in unseen:
+            if (corner, direction) in remaining_edges:
                 loop = list(_walk(edges, (corner, direction)))
-                unseen.difference_update(loop)
+                remaining_edges.difference_update(loop)
                 loops.append(_corners(loop))
     return loops
 
 
 def simplify(loop: Loop, tolerance: float) -> Loop:
-    """Drop corners that move the outline by at most `tolerance` (same unit as the loop).
+    """Drop the corners whose removal moves the outline by at most `tolerance` (in the unit of the loop).
 
-    The method of Ramer (1972) and of Douglas and Peucker (1973), on the two halves of the loop between its first corner
-    and the corner farthest from it. A loop that would lose its area is returned as it is.
+    The method is that of Ramer (1972) and of Douglas and Peucker (1973), for the two halves of the loop between its
+    first corner and the corner farthest from it. A loop that would lose its area is returned unchanged.
     """
     if tolerance <= 0.0 or len(loop) < 4:
         return loop
-    far = int(np.argmax(np.hypot(*(loop - loop[0]).T)))
-    closed = np.vstack([loop, loop[:1]])
-    keep = sorted(set(_kept(closed, 0, far, tolerance)) | set(_kept(closed, far, len(loop), tolerance)))
-    kept = closed[[index for index in keep if index < len(loop)]]
-    return kept if len(kept) >= 3 else loop
+    farthest = int(np.argmax(np.hypot(*(loop - loop[0]).T)))
+    closed_loop = np.vstack([loop, loop[:1]])
+    indices = sorted(
+        set(_significant(closed_loop, 0, farthest, tolerance))
+        | set(_significant(closed_loop, farthest, len(loop), tolerance))
+    )
+    corners = closed_loop[[index for index in indices if index < len(loop)]]
+    return corners if len(corners) >= 3 else loop
 
 
 def loop_segments(loops: list[Loop]) -> npt.NDArray[np.float64]:
@@ -69,10 +72,10 @@ def loop_segments(loops: list[Loop]) -> npt.NDArray[np.float64]:
 
 
 def roomiest_point(free: Grid) -> tuple[float, float] | None:
-    """Return the centre, in cells, of the largest all-free square; None where no cell is free.
+    """Return the centre, in cells, of the largest square of free cells, or None if no cell is free.
 
-    Bisection over the side, each trial one look at a summed-area table: O(HW log min(H, W)). Of several squares of that
-    side it takes the one nearest to the grid's centre, so that the answer is a place a person would choose.
+    The side is found by bisection, and a summed-area table tests each side in one step: O(HW log min(H, W)). Of several
+    squares with that side, the one nearest to the grid's centre is chosen, as a person would do.
     """
     height, width = free.shape
     area = np.zeros((height + 1, width + 1), dtype=np.int64)
@@ -96,9 +99,9 @@ def roomiest_point(free: Grid) -> tuple[float, float] | None:
 
 def _directed_edges(occupied: Grid) -> Edges:
     """Map each corner (x, y) to the directions of the unit edges that leave it, occupied side on the left."""
-    padded = np.pad(occupied, 1)
-    below, above = padded[:-1, 1:-1], padded[1:, 1:-1]
-    left, right = padded[1:-1, :-1], padded[1:-1, 1:]
+    padded_cells = np.pad(occupied, 1)
+    below, above = padded_cells[:-1, 1:-1], padded_cells[1:, 1:-1]
+    left, right = padded_cells[1:-1, :-1], padded_cells[1:-1, 1:]
     edges: Edges = {}
     for mask, direction, dx, dy in (
         (above & ~below, _EAST, 0, 0),
@@ -115,30 +118,30 @@ def _directed_edges(occupied: Grid) -> Edges:
 def _walk(edges: Edges, first: Edge) -> Iterator[Edge]:
     """Yield the edges of the loop that starts with `first`.
 
-    At a corner that two diagonal cells share it turns left, which keeps to the cell it came along.
+    At a corner that two diagonal cells share, it turns left and so stays at the same cell.
     """
     edge = first
     while True:
         yield edge
         (x, y), heading = edge
-        here = (x + _STEP[heading][0], y + _STEP[heading][1])
-        leaving = edges[here]
-        turn = next(d for d in ((heading + 1) % 4, heading, (heading - 1) % 4) if d in leaving)
-        edge = (here, turn)
+        corner = (x + _STEP[heading][0], y + _STEP[heading][1])
+        outgoing_directions = edges[corner]
+        turn = next(d for d in ((heading + 1) % 4, heading, (heading - 1) % 4) if d in outgoing_directions)
+        edge = (corner, turn)
         if edge == first:
             return
 
 
 def _corners(loop: list[Edge]) -> Loop:
     """Return the points at which the direction changes."""
-    before = [loop[-1], *loop[:-1]]
-    points = [edge[0] for edge, last in zip(loop, before, strict=True) if edge[1] != last[1]]
+    previous_edges = [loop[-1], *loop[:-1]]
+    points = [edge[0] for edge, last in zip(loop, previous_edges, strict=True) if edge[1] != last[1]]
     return np.array(points, dtype=np.float64)
 
 
-def _kept(points: Loop, first: int, last: int, tolerance: float) -> list[int]:
-    """Return the indices that stay between `first` and `last`, both included; a stack, for loops may be long."""
-    kept, stack = [first, last], [(first, last)]
+def _significant(points: Loop, first: int, last: int, tolerance: float) -> list[int]:
+    """Return the indices to keep from `first` to `last`, both included. It does not recurse, as loops can be long."""
+    indices, stack = [first, last], [(first, last)]
     while stack:
         a, b = stack.pop()
         if b - a < 2:
@@ -153,6 +156,6 @@ def _kept(points: Loop, first: int, last: int, tolerance: float) -> list[int]:
         worst = int(np.argmax(distance))
         if distance[worst] > tolerance:
             middle = a + 1 + worst
-            kept.append(middle)
+            indices.append(middle)
             stack += [(a, middle), (middle, b)]
-    return kept
+    return indices

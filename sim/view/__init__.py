@@ -2,7 +2,7 @@
 
     >>> from sim.view import show, plot, live
 
-Nothing here touches pyplot or chooses a backend; `import sim` does not import it.
+This package does not use pyplot or choose a backend, and `import sim` does not import it.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def __getattr__(name: str) -> Any:
-    """Import the live view, and ipywidgets with it, only for those who ask for it."""
+    """Import the live view, and ipywidgets with it, only when it is used."""
     if name in ("live", "LiveView"):
         from importlib import import_module
 

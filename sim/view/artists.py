@@ -1,6 +1,6 @@
-"""Things as Matplotlib artists: each function adds artists to an Axes, as `sim.view.marks` describes, and returns them.
+"""Draws with Matplotlib. Each function adds artists to an Axes, in the style of `sim.view.marks`, and returns them.
 
-Units are metres, frame `map`. The static figures and the live view are drawn by the same functions.
+Units are metres, frame `map`. The static figures and the live view use the same functions.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ from sim.view.theme import Theme
 from sim.world import World
 
 
-def area(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
-    """Return how a patch looks, `own` being the robot's colour."""
+def area(name: str, theme: Theme, robot_colour: str = "") -> dict[str, Any]:
+    """Return the style of a patch. Marks of a robot need `robot_colour`."""
     mark = MARKS[name]
     return {
-        "facecolor": _colour(mark.fill, theme, own),
-        "edgecolor": _colour(mark.line, theme, own),
+        "facecolor": _colour(mark.fill, theme, robot_colour),
+        "edgecolor": _colour(mark.line, theme, robot_colour),
         "linewidth": mark.width,
         "linestyle": (0, mark.dash) if mark.dash else "-",
         "alpha": mark.alpha,
@@ -50,11 +50,11 @@ def area(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
     }
 
 
-def line(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
-    """Return how a line looks, `own` being the robot's colour."""
+def line(name: str, theme: Theme, robot_colour: str = "") -> dict[str, Any]:
+    """Return the style of a line. Marks of a robot need `robot_colour`."""
     mark = MARKS[name]
     return {
-        "color": _colour(mark.line, theme, own),
+        "color": _colour(mark.line, theme, robot_colour),
         "linewidth": mark.width,
         "linestyle": (0, mark.dash) if mark.dash else "-",
         "alpha": mark.alpha,
@@ -62,28 +62,28 @@ def line(name: str, theme: Theme, own: str = "") -> dict[str, Any]:
     }
 
 
-def symbol(name: str, theme: Theme, own: str = "", marker: str = "o") -> dict[str, Any]:
-    """Return how a symbol of one size in every world looks, `own` being the robot's colour."""
+def symbol(name: str, theme: Theme, robot_colour: str = "", marker: str = "o") -> dict[str, Any]:
+    """Return the style of a symbol, which has the same size in every world. Marks of a robot need `robot_colour`."""
     mark = MARKS[name]
     return {
         "linestyle": "none",
         "marker": marker,
         "markersize": mark.size,
-        "color": _colour(mark.fill or mark.line, theme, own),
-        "markerfacecolor": _colour(mark.fill, theme, own),
-        "markeredgecolor": _colour(mark.line, theme, own),
+        "color": _colour(mark.fill or mark.line, theme, robot_colour),
+        "markerfacecolor": _colour(mark.fill, theme, robot_colour),
+        "markeredgecolor": _colour(mark.line, theme, robot_colour),
         "markeredgewidth": mark.width,
         "alpha": mark.alpha,
         "zorder": mark.layer,
     }
 
 
-def _colour(name: str, theme: Theme, own: str) -> str:
-    return own if name == OWN else str(getattr(theme, name)) if name else "none"
+def _colour(name: str, theme: Theme, robot_colour: str) -> str:
+    return robot_colour if name == OWN else str(getattr(theme, name)) if name else "none"
 
 
 def set_stage(ax: Axes, world: World, theme: Theme) -> None:
-    """Give `ax` the world's limits, a metre grid and quiet ticks."""
+    """Set the limits of the Axes to those of the world, and add a grid in metres and unobtrusive ticks."""
     left, low, right, high = world.bounds
     margin = margin_of(world)
     ax.set_xlim(left - margin, right + margin)
@@ -105,9 +105,9 @@ def set_stage(ax: Axes, world: World, theme: Theme) -> None:
 
 
 def draw_walls(ax: Axes, world: World, theme: Theme) -> list[Artist]:
-    """Draw segments and circles; what is closed all round, and holds no robot, is filled."""
-    look = line("wall", theme)
-    lines = LineCollection(list(world.segments.reshape(-1, 2, 2)), capstyle="round", **_many(look))
+    """Draw segments and circles. Closed outlines that do not contain a robot are filled."""
+    style = line("wall", theme)
+    lines = LineCollection(list(world.segments.reshape(-1, 2, 2)), capstyle="round", **_collection_style(style))
     ax.add_collection(lines, autolim=False)
     artists: list[Artist] = [lines]
     room, solid = outlines(world)
@@ -120,21 +120,21 @@ def draw_walls(ax: Axes, world: World, theme: Theme) -> list[Artist]:
     return artists
 
 
-def _many(look: dict[str, Any]) -> dict[str, Any]:
-    """Return the look of a line as a collection of lines is told it."""
-    return {"colors": look.pop("color"), "linewidths": look.pop("linewidth"), **look}
+def _collection_style(style: dict[str, Any]) -> dict[str, Any]:
+    """Convert the style of a line to the style of a collection of lines."""
+    return {"colors": style.pop("color"), "linewidths": style.pop("linewidth"), **style}
 
 
 def draw_places(ax: Axes, world: World, theme: Theme, *, radius: float = 0.105, starts: bool = True) -> list[Artist]:
-    """Draw goals (rings), the paths of moving obstacles (dotted) and, if wanted, start poses (dashed robots)."""
+    """Draw goals (rings), the paths of moving obstacles (dotted) and, if `starts`, start poses (dashed robots)."""
     artists: list[Artist] = []
     for goal in world.goals:
         for name, share in (("goal", 1.0), ("goal ring", 1.0), ("goal middle", MIDDLE)):
             artists.append(ax.add_patch(Circle((goal.x, goal.y), share * goal.radius, **area(name, theme))))
     for start in world.starts if starts else ():
         artists.append(ax.add_patch(Circle((start.x, start.y), radius, **area("start", theme))))
-        ahead = radius * np.array([math.cos(start.theta), math.sin(start.theta)])
-        ends = np.array([start.x, start.y]) + np.array([ahead, POINTER * ahead])
+        direction = radius * np.array([math.cos(start.theta), math.sin(start.theta)])
+        ends = np.array([start.x, start.y]) + np.array([direction, POINTER * direction])
         artists += ax.plot(*ends.T, **line("start nose", theme))
     for mover in world.movers:
         path = np.array([*mover.path, *(mover.path[:1] if mover.loop else ())])
@@ -143,12 +143,12 @@ def draw_places(ax: Axes, world: World, theme: Theme, *, radius: float = 0.105, 
 
 
 def mover_patch(x: float, y: float, radius: float, theme: Theme) -> Circle:
-    """Return a moving obstacle: a soft disc with a rim."""
+    """Return the patch of a moving obstacle: a translucent disc with a rim."""
     return Circle((x, y), radius, **area("mover", theme))
 
 
 def draw_robot(ax: Axes, spec: RobotSpec, pose: Pose, theme: Theme, colour: str) -> list[Artist]:
-    """Draw the footprint to scale, an arrowhead for the heading, and a halo that is found from the back row."""
+    """Draw the footprint to scale, an arrowhead for the heading, and a halo that makes the robot easy to find."""
     halo = ax.plot(pose.x, pose.y, **symbol("halo", theme, colour))
     body = Polygon(place(body_outline(spec), pose), closed=True, **area("body", theme, colour))
     nose = Polygon(place(nose_outline(spec), pose), closed=True, **area("nose", theme))
@@ -158,19 +158,19 @@ def draw_robot(ax: Axes, spec: RobotSpec, pose: Pose, theme: Theme, colour: str)
 
 
 def name_text(ax: Axes, name: str, theme: Theme) -> Any:
-    """Return the text that names one robot of several, to be put at `name_place` as its `xy`."""
-    text = ax.annotate(name, (0, 0), (0, 4), textcoords="offset points", ha="center", va="bottom", **words(theme))
+    """Return the text with the name of a robot. Its `xy` has to be set to `anchor_of_name`."""
+    text = ax.annotate(name, (0, 0), (0, 4), textcoords="offset points", ha="center", va="bottom", **text_style(theme))
     text.set_clip_on(True)
     return text
 
 
-def name_place(spec: RobotSpec, pose: Pose) -> tuple[float, float]:
-    """Return the place below a robot's name: the upper edge of what it can cover."""
+def anchor_of_name(spec: RobotSpec, pose: Pose) -> tuple[float, float]:
+    """Return the point below a robot's name: the top of the circle that the robot covers as it turns."""
     return pose.x, pose.y + float(np.hypot(*body_outline(spec).T).max())
 
 
-def words(theme: Theme) -> dict[str, Any]:
-    """Return how words on the floor look: with an edge of paper, to be read on any ground."""
+def text_style(theme: Theme) -> dict[str, Any]:
+    """Return the style of text on the floor. Its outline in the paper's colour makes it readable on any background."""
     mark = MARKS["words"]
     return {
         "fontsize": mark.size,
@@ -180,27 +180,29 @@ def words(theme: Theme) -> dict[str, Any]:
     }
 
 
-def chosen_beams(hit: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
-    """Return which of the beams are drawn as lines: of about `BEAMS` all round, those that hit something."""
-    shown = np.zeros(len(hit), dtype=bool)
-    shown[:: max(1, round(len(hit) / BEAMS))] = True
-    return np.flatnonzero(shown & hit)
+def chosen_beams(has_hit: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+    """Return the indices of the beams to draw as lines: about `BEAMS` at equal angles, but none that hit nothing."""
+    is_candidate = np.zeros(len(has_hit), dtype=bool)
+    is_candidate[:: max(1, round(len(has_hit) / BEAMS))] = True
+    return np.flatnonzero(is_candidate & has_hit)
 
 
 def draw_scan(ax: Axes, ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose, theme: Theme) -> list[Artist]:
-    """Draw thin beams, the area that the scan has seen to be free, and a point for each hit."""
-    mount, ends, hit = beam_ends(ranges, lidar, pose)
+    """Draw thin beams, the free area of the scan, and a point for each hit."""
+    mount, ends, has_hit = beam_ends(ranges, lidar, pose)
     outline = ends if is_full_turn(lidar) else np.vstack([mount, ends])
-    seen = Polygon(outline, closed=True, **area("seen", theme))
-    ax.add_patch(seen)
-    rays = LineCollection([np.vstack([mount, end]) for end in ends[chosen_beams(hit)]], **_many(line("ray", theme)))
+    free_area = Polygon(outline, closed=True, **area("seen", theme))
+    ax.add_patch(free_area)
+    rays = LineCollection(
+        [np.vstack([mount, end]) for end in ends[chosen_beams(has_hit)]], **_collection_style(line("ray", theme))
+    )
     ax.add_collection(rays, autolim=False)
-    (points,) = ax.plot(*ends[hit].T, **symbol("hit", theme))
-    return [seen, rays, points]
+    (points,) = ax.plot(*ends[has_hit].T, **symbol("hit", theme))
+    return [free_area, rays, points]
 
 
 def draw_track(ax: Axes, points: Floats, values: Floats, colours: Any, limits: tuple[float, float]) -> LineCollection:
-    """Draw a track (K, 2) whose pieces are coloured by `values` (K,) between `limits`."""
+    """Draw a track (K, 2), coloured by `values` (K,) between `limits`."""
     pieces = np.stack([points[:-1], points[1:]], axis=1)
     mark = MARKS["track"]
     track = LineCollection(list(pieces), cmap=colours, linewidths=mark.width, capstyle="round", zorder=mark.layer)
@@ -211,7 +213,7 @@ def draw_track(ax: Axes, points: Floats, values: Floats, colours: Any, limits: t
 
 
 def draw_crosses(ax: Axes, places: Sequence[tuple[float, float]], theme: Theme) -> list[Artist]:
-    """Mark collisions."""
+    """Mark collisions with crosses."""
     if not places:
         return []
     x, y = zip(*places, strict=True)
@@ -222,13 +224,13 @@ def draw_crosses(ax: Axes, places: Sequence[tuple[float, float]], theme: Theme) 
 
 
 def draw_moment(ax: Axes, moment: Moment, world: World, theme: Theme) -> None:
-    """Draw the line to what is nearest at a moment; ring the robot and write a note, if somebody chose the moment."""
-    near, between = moment.near, "gap" if moment.marked else "closest"
+    """Draw the line to the nearest obstacle at a moment. At a marked moment, also draw a ring and write the note."""
+    near, mark_name = moment.near, "gap" if moment.marked else "closest"
     if math.isfinite(near.x) and math.isfinite(near.y):
-        ax.plot((moment.x, near.x), (moment.y, near.y), **line(between, theme))
-        ax.plot(near.x, near.y, **symbol(f"{between} end", theme))
+        ax.plot((moment.x, near.x), (moment.y, near.y), **line(mark_name, theme))
+        ax.plot(near.x, near.y, **symbol(f"{mark_name} end", theme))
     if not moment.marked:
-        style = {"textcoords": "offset points", "ha": "left", "va": "center", **words(theme)}
+        style = {"textcoords": "offset points", "ha": "left", "va": "center", **text_style(theme)}
         ax.annotate(moment.words, moment.spot, (7, 0), annotation_clip=True, **style)
         return
     ax.plot(moment.x, moment.y, **symbol("instant", theme))

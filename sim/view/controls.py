@@ -1,4 +1,4 @@
-"""The widgets of the live view: what the buttons look like and which method of the view each one calls."""
+"""The widgets of the live view: the buttons, and the methods of the view that they call."""
 
 from __future__ import annotations
 
@@ -10,52 +10,52 @@ from sim.pose import Command
 from sim.view.session import Source
 
 LINEAR, ANGULAR = 0.22, 0.9
-"""What an arrow of the pad asks for, in m/s and rad/s."""
+"""The speeds that an arrow of the pad commands, in m/s and rad/s."""
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 5.0)
 
-_SOMEBODY = "your code drives"
+_CODE_DRIVES = "your code drives"
 
 
 class Player(Protocol):
-    """What the buttons control; `sim.view.LiveView` is one."""
+    """The interface of the view that the buttons control, such as `sim.view.LiveView`."""
 
     @property
     def playing(self) -> bool:
-        """Whether time goes on."""
+        """Whether time advances."""
 
     def play(self) -> None:
-        """Let time go on."""
+        """Let time advance."""
 
     def pause(self) -> None:
         """Stop time."""
 
     def step(self) -> None:
-        """Pause, and go on by 0.1 s of simulated time."""
+        """Pause, and simulate 0.1 s."""
 
     def seek(self, seconds: float) -> None:
         """Show the instant `seconds`."""
 
     def reset(self) -> None:
-        """Go back to the start of the run."""
+        """Return to the start of the run."""
 
     def drive(self, command: Command) -> None:
-        """Give the first robot a command by hand."""
+        """Give the first robot a manual command."""
 
     def automatic(self) -> None:
-        """Give the first robot back to the callback or to the node that drives it."""
+        """Return control of the first robot to the callback or to the node that drives it."""
 
     def set_speed(self, speed: float) -> None:
-        """Set how many simulated seconds pass in a second."""
+        """Set the number of simulated seconds per second."""
 
 
 class Controls:
-    """A place for errors, and below it as in the player of a run: an image, a row to play with time, a pad to drive."""
+    """An output for errors and, as in the player of a run, an image, a row of time controls and a pad to drive."""
 
     def __init__(self, view: Player, source: Source, speed: float, width: int) -> None:
-        """Make the widgets of `view`, whose image is `width` pixels wide."""
+        """Create the widgets of `view`, with an image of `width` pixels."""
         self._view = view
-        self._quiet = False
+        self._is_updating = False
         self._image = widgets.Image(format="jpeg", layout={"width": "100%", "max_width": f"{width}px", "margin": "0"})
         self._play = widgets.ToggleButton(value=False, description="Play", tooltip="Play", layout={"width": "80px"})
         self._slider = widgets.FloatSlider(
@@ -83,49 +83,49 @@ class Controls:
         time_row = [self._play, step, *([reset] if source.growing else []), self._slider]
         if source.paced:
             time_row.append(self._speed)
-        timing = widgets.HBox(time_row, layout={"max_width": f"{width}px", "align_items": "center"})
-        rows: list[Any] = [self._output, self._image, timing]
+        time_box = widgets.HBox(time_row, layout={"max_width": f"{width}px", "align_items": "center"})
+        rows: list[Any] = [self._output, self._image, time_box]
         if source.growing:
             rows.append(self._pad(source.can_be_released))
         self.box = widgets.VBox(rows)
 
     def show(self, jpeg: bytes, now: float, end: float) -> None:
-        """Put a frame on show and move the slider, without taking that for a hand on the slider."""
-        self._quiet = True
+        """Show a frame and move the slider, without reacting to the slider's change."""
+        self._is_updating = True
         self._image.value = jpeg
-        # A slider that is moved forty times a second can't be grabbed: it follows four times a second, and obeys a hand
-        # only while time stands still.
+        # A slider that moves forty times a second cannot be grabbed. So it moves only four times a second, and can be
+        # dragged only while time is stopped.
         if not self._view.playing or abs(now - self._slider.value) >= 0.25 * self._speed.value:
             if end > self._slider.max:
                 self._slider.max = max(end, 1.5 * self._slider.max)
             self._slider.value = now
-        self._quiet = False
+        self._is_updating = False
 
     def set_playing(self, playing: bool) -> None:
-        """Make the button say what pressing it would do."""
-        self._quiet = True
+        """Label the button with the action that a click would start."""
+        self._is_updating = True
         self._play.value = playing
         self._play.description = self._play.tooltip = "Pause" if playing else "Play"
         self._slider.disabled = playing
-        self._quiet = False
+        self._is_updating = False
 
     def set_command(self, command: Command | None) -> None:
-        """Say who drives: a command given by hand, or None for the callback."""
+        """Show a manual command or, if it is None, that the callback drives."""
         if command is None:
-            self._who.value = _SOMEBODY
+            self._driver_label.value = _CODE_DRIVES
         else:
-            self._who.value = f"{command.linear:+.2f} m/s  {command.angular:+.2f} rad/s"
+            self._driver_label.value = f"{command.linear:+.2f} m/s  {command.angular:+.2f} rad/s"
 
     def show_error(self, text: str) -> None:
-        """Print what the callback raised above the picture, where it can't be overlooked."""
+        """Print an exception of the callback above the picture, where it cannot be overlooked."""
         self._output.outputs = ({"output_type": "stream", "name": "stderr", "text": text},)
 
     def clear_error(self) -> None:
-        """Take the error away."""
+        """Remove the error."""
         self._output.outputs = ()
 
-    def _pad(self, releases: bool) -> widgets.Widget:
-        self._who = widgets.Label(value=_SOMEBODY if releases else "drive with the arrows")
+    def _pad(self, can_be_released: bool) -> widgets.Widget:
+        self._driver_label = widgets.Label(value=_CODE_DRIVES if can_be_released else "drive with the arrows")
         drive = self._view.drive
         buttons = [
             self._button("rotate-left", "Turn left", lambda: drive(Command(0.0, ANGULAR))),
@@ -134,9 +134,9 @@ class Controls:
             self._button("rotate-right", "Turn right", lambda: drive(Command(0.0, -ANGULAR))),
             self._button("stop", "Stop the robot", lambda: drive(Command())),
         ]
-        if releases:
+        if can_be_released:
             buttons.append(self._button("magic", "Let your code drive", self._view.automatic))
-        return widgets.HBox([*buttons, self._who], layout={"align_items": "center"})
+        return widgets.HBox([*buttons, self._driver_label], layout={"align_items": "center"})
 
     def _button(self, icon: str, tooltip: str, action: Any) -> widgets.Button:
         button = widgets.Button(icon=icon, tooltip=tooltip, layout={"width": "44px"})
@@ -144,12 +144,12 @@ class Controls:
         return button
 
     def _on_play(self, change: Any) -> None:
-        if not self._quiet:
+        if not self._is_updating:
             if change["new"]:
                 self._view.play()
             else:
                 self._view.pause()
 
     def _on_slider(self, change: Any) -> None:
-        if not self._quiet and not self._view.playing:
+        if not self._is_updating and not self._view.playing:
             self._view.seek(change["new"])

@@ -1,4 +1,4 @@
-"""The static pictures: `show` a world, `plot` a recording. They need no kernel, no widget and no backend."""
+"""Static pictures: `show` draws a world, and `plot` a recording. They need no kernel, widget or backend."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from sim.view.theme import STYLE, Theme, theme_named
 from sim.world import World
 
 CLEARANCE_SCALE = 0.6
-"""Metres of clearance from which on a track counts as free: the far end of its colours."""
+"""The clearance in metres at the far end of a track's colours."""
 
 
 def show(
@@ -33,15 +33,15 @@ def show(
     names: bool = True,
     title: str | None = None,
 ) -> Picture:
-    """Draw a world; with a simulation and a state also its robots and what their lidars see.
+    """Draw a world and, with a simulation and a state, also its robots and their scans.
 
     Args:
         subject: a world, or a simulation with its robots.
-        state: where the robots are; without one, they are not drawn.
-        ax: is drawn into; without one, a new figure is made.
-        theme: "light", "dark", or one of your own.
-        names: whether the names of walls and goals are written.
-        title: of the picture; the world's name by default.
+        state: the state of the robots. Without a state, they are not drawn.
+        ax: the Axes to draw on, by default those of a new figure.
+        theme: "light", "dark", or a `Theme`.
+        names: whether to write the names of walls and goals.
+        title: the title of the picture, by default the world's name.
     """
     simulation = subject if isinstance(subject, Simulation) else Simulation(subject)
     world, colours = simulation.world, theme_named(theme)
@@ -72,35 +72,35 @@ def plot(
     names: bool = False,
     title: str | None = None,
 ) -> Picture:
-    """Draw the tracks of a recording, its collisions, and its closest place or one marked instant.
+    """Draw the tracks of a recording, its collisions, and its nearest approach or a marked instant.
 
     Args:
         recording: the run.
-        robot: the name of the one that is drawn; all of them if None.
-        colour: what the colour of a track means.
-        mark: a time in seconds; the robot is drawn as it was then, with its scan and a line to the nearest obstacle.
-        note: what stands beside the mark.
-        ax: is drawn into; without one, a new figure is made.
-        theme: "light", "dark", or one of your own.
-        names: whether the names of walls and goals are written.
-        title: of the picture; the world's name by default.
+        robot: the name of the robot to draw; all robots if None.
+        colour: the quantity that the colour of a track shows.
+        mark: a time in seconds. The robot is drawn at this time, with its scan and a line to the nearest obstacle.
+        note: the text beside the mark.
+        ax: the Axes to draw on, by default those of a new figure.
+        theme: "light", "dark", or a `Theme`.
+        names: whether to write the names of walls and goals.
+        title: the title of the picture, by default the world's name.
 
     Raises:
-        ValueError: the recording does not have the robot, or the colour or the mark makes no sense.
+        ValueError: the recording does not have the robot, or the colour or the mark is invalid.
     """
     simulation, world, scheme = recording.simulation, recording.simulation.world, theme_named(theme)
     if colour not in ("time", "clearance"):
         raise ValueError(f"a track has no colour {colour!r}: choose time or clearance")
-    indices = _robots(simulation, robot)
+    indices = _robot_indices(simulation, robot)
     moment = moment_of(recording, indices, mark, note)
     row = None if mark is None else row_at(recording, mark)
-    now = len(recording) - 1 if row is None else row
+    shown_row = len(recording) - 1 if row is None else row
     with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
         ax = ax or new_axes(world, scheme)
         prepare(ax, world, scheme, title or _heading(world), _summary(recording, indices, nearest=len(indices) == 1))
-        _draw_world(ax, simulation, int(recording.times_ns[now]), scheme, names)
-        for place in reversed(indices):
-            _draw_one(ax, recording, place, colour, scheme, now, scan=row is None or place == indices[0])
+        _draw_world(ax, simulation, int(recording.times_ns[shown_row]), scheme, names)
+        for index in reversed(indices):
+            _draw_robot_run(ax, recording, index, colour, scheme, shown_row, scan=row is None or index == indices[0])
         _add_scale(ax, recording, indices[0], colour, scheme)
         if moment is not None:
             artists.draw_moment(ax, moment, world, scheme)
@@ -108,8 +108,8 @@ def plot(
 
 
 def heading(recording: Recording) -> tuple[str, str]:
-    """Return the title of a run, and the line below it: how long it took, how far it went, what it touched."""
-    indices = _robots(recording.simulation, None)
+    """Return the title of a run, and its summary: the duration, the distance and the collisions."""
+    indices = _robot_indices(recording.simulation, None)
     return _heading(recording.simulation.world), _summary(recording, indices, nearest=len(indices) == 1)
 
 
@@ -123,8 +123,10 @@ def _draw_world(ax: Axes, simulation: Simulation, time_ns: int, theme: Theme, na
         write_names(ax, world, theme)
 
 
-def _draw_one(ax: Axes, recording: Recording, index: int, colour: str, theme: Theme, now: int, *, scan: bool) -> None:
-    points, own = recording.poses[:, index, :2], theme.robot_colour(index)
+def _draw_robot_run(
+    ax: Axes, recording: Recording, index: int, colour: str, theme: Theme, shown_row: int, *, scan: bool
+) -> None:
+    points, robot_colour = recording.poses[:, index, :2], theme.robot_colour(index)
     if colour == "time":
         artists.draw_track(ax, points, recording.times, theme.time_colours(index), _time_limits(recording))
     else:
@@ -133,18 +135,18 @@ def _draw_one(ax: Axes, recording: Recording, index: int, colour: str, theme: Th
     spec = recording.simulation.robots[index]
     events = [event for event in recording.events if event.kind == "collision" and event.robot == spec.name]
     if scan:
-        _draw_last_scan(ax, recording, index, now, theme)
+        _draw_last_scan(ax, recording, index, shown_row, theme)
     artists.draw_crosses(ax, [(event.x, event.y) for event in events], theme)
-    pose = Pose(*recording.poses[now, index].tolist())
-    artists.draw_robot(ax, spec, pose, theme, own)
+    pose = Pose(*recording.poses[shown_row, index].tolist())
+    artists.draw_robot(ax, spec, pose, theme, robot_colour)
     _name_robot(ax, recording.simulation, index, pose, theme)
 
 
 def _name_robot(ax: Axes, simulation: Simulation, index: int, pose: Pose, theme: Theme) -> None:
-    """Write a robot's name beside it, if it is one of several."""
+    """Write a robot's name beside it, if there are several."""
     if len(simulation.robots) > 1:
         spec = simulation.robots[index]
-        artists.name_text(ax, spec.name, theme).xy = artists.name_place(spec, pose)
+        artists.name_text(ax, spec.name, theme).xy = artists.anchor_of_name(spec, pose)
 
 
 def _add_scale(ax: Axes, recording: Recording, index: int, colour: str, theme: Theme) -> None:
@@ -165,13 +167,13 @@ def _draw_last_scan(ax: Axes, recording: Recording, index: int, row: int, theme:
         artists.draw_scan(ax, newest[0].ranges, lidar, newest[1], theme)
 
 
-def _robots(simulation: Simulation, robot: str | None) -> list[int]:
-    every = [spec.name for spec in simulation.robots]
+def _robot_indices(simulation: Simulation, robot: str | None) -> list[int]:
+    names = [spec.name for spec in simulation.robots]
     if robot is None:
-        return list(range(len(every)))
-    if robot not in every:
-        raise ValueError(f"the recording has no robot {robot!r}: it has {', '.join(every)}")
-    return [every.index(robot)]
+        return list(range(len(names)))
+    if robot not in names:
+        raise ValueError(f"the recording has no robot {robot!r}: it has {', '.join(names)}")
+    return [names.index(robot)]
 
 
 def _figure(ax: Axes) -> Figure:
@@ -189,22 +191,22 @@ def _size(world: World) -> str:
 
 
 def _summary(recording: Recording, indices: list[int], *, nearest: bool = True) -> str:
-    """Say of each robot what it did; of several, the heading of a picture has no room for what was nearest."""
+    """Summarise the run of each robot. For several robots, a heading has no room for the nearest distances."""
     seconds = f"{recording.times[-1] - recording.times[0]:.1f} s"
     if len(indices) == 1:
-        return " · ".join([seconds, *_drive(recording, indices[0], nearest)])
+        return " · ".join([seconds, *_run_facts(recording, indices[0], nearest)])
     robots = recording.simulation.robots
-    return " · ".join([seconds, *(f"{robots[i].name} {', '.join(_drive(recording, i, nearest))}" for i in indices)])
+    return " · ".join([seconds, *(f"{robots[i].name} {', '.join(_run_facts(recording, i, nearest))}" for i in indices)])
 
 
-def _drive(recording: Recording, index: int, nearest: bool) -> list[str]:
-    """Say of one robot how far it drove, what it hit and, if asked, how near it came to anything."""
+def _run_facts(recording: Recording, index: int, nearest: bool) -> list[str]:
+    """Return a robot's distance, its collisions and, if `nearest`, its smallest clearance, as texts."""
     length = float(np.hypot(*np.diff(recording.poses[:, index, :2], axis=0).T).sum())
     name, clearances = recording.simulation.robots[index].name, recording.clearances[:, index]
-    hits = sum(event.kind == "collision" and event.robot == name for event in recording.events)
+    collision_count = sum(event.kind == "collision" and event.robot == name for event in recording.events)
     parts = [f"{length:.1f} m driven"]
-    if hits:
-        parts.append(f"{hits} collision{'s' if hits > 1 else ''}")
+    if collision_count:
+        parts.append(f"{collision_count} collision{'s' if collision_count > 1 else ''}")
     elif nearest and np.isfinite(clearances).any():
         parts.append(f"never nearer than {max(0.0, float(np.nanmin(clearances))):.2f} m")
     return parts

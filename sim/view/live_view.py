@@ -1,8 +1,8 @@
-"""The live view for JupyterLab: one image, a row of buttons, and a task on the kernel's own event loop.
+"""The live view for JupyterLab: an image, a row of buttons, and a task in the kernel's event loop.
 
-A task, not a thread: the student's callback then runs where the rest of their code runs, between cells and never in the
-middle of one, so that their variables can't change under their hands and no lock is needed. A cell that runs long makes
-the picture wait, and the simulated time with it: nothing is missed. Each frame the task gives the loop back.
+It is a task and not a thread, so that the student's callback runs in the same thread as the cells, and never while one
+of them runs. So variables do not change during a cell, and no lock is needed. While a long cell runs, both the picture
+and simulated time wait, so that nothing is missed. The task returns to the loop after each frame.
 
 Under a grader (the environment variable AUTOGRADER_GRADING is set) `live` starts nothing and returns a picture.
 """
@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from sim.bridge.background import Bridge
 
 FPS = 40.0
-"""Frames a second that the view aims at."""
+"""The intended number of frames a second."""
 
-LONGEST_LEAP = 0.1
-"""Seconds that a frame may add at most: while a cell runs long, simulated time waits with the picture."""
+MAX_FRAME_SECONDS = 0.1
+"""The most real time that one frame accounts for, in s, so that simulated time waits while a long cell runs."""
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -53,34 +53,35 @@ def live(
     names: bool = False,
     play: bool = True,
 ) -> LiveView | Player | Picture:
-    """Show a world, a simulation, a recording or a ROS bridge that moves, with buttons to play, pause, seek and drive.
+    """Show a moving world, simulation, recording or ROS bridge, with buttons to play, pause, seek and drive.
 
-    A recording is played by the page alone: it plays on when the kernel is busy, and in an exported notebook.
+    A recording is played by the page itself, even while the kernel is busy, and in an exported notebook.
 
-    `controller` gets each new scan of the first robot and returns a `Command` (or None: as before); without one the
-    robot obeys the pad. `speed` is simulated seconds a second. Whatever `controller` raises pauses the view and is
-    printed above it. Without a running event loop (a plain script) the view is there, but stands still.
+    `controller` is called with each new scan of the first robot, and returns a `Command`, or None to keep the last one.
+    Without a controller, the pad drives the robot. `speed` is in simulated seconds per second. If `controller` raises
+    an exception, the view pauses and prints it. Without a running event loop, as in a plain script, the view does not
+    move.
 
     Raises:
-        ValueError: for a speed that is not above zero, an unknown theme, or a callback where something else drives.
+        ValueError: the speed or the theme is invalid, or the source does not accept a callback.
     """
     if not 0.0 < speed <= 100.0:
         raise ValueError(f"a speed of {speed} makes no sense: give a factor above 0 and up to 100, 1 is real time")
     colours = theme_named(theme)
     if grading():
-        return _still(source, colours)
+        return _still_picture(source, colours)
     if isinstance(source, Recording):
         if controller is not None:
             raise ValueError("a callback can't drive a recording: give live() a world or a simulation")
         return Player(source, theme=colours.name, speed=speed, play=play)
-    view = LiveView(_playable(source, controller), colours, speed=speed, names=names)
+    view = LiveView(_source_of(source, controller), colours, speed=speed, names=names)
     if play:
         view.play()
     return view
 
 
 class LiveView:
-    """What `live` returns: shows itself in a notebook; its methods do what its buttons do."""
+    """The result of `live`, which a notebook displays. Its methods have the same effects as its buttons."""
 
     def __init__(self, source: Source, theme: Theme, *, speed: float = 1.0, names: bool = False) -> None:
         self._source = source
@@ -88,7 +89,7 @@ class LiveView:
         self._speed = speed
         self._now_ns = 0
         self._task: asyncio.Task[None] | None = None
-        self._shown: deque[float] = deque(maxlen=60)
+        self._frame_times: deque[float] = deque(maxlen=60)
         self._controls = Controls(self, source, speed, self._renderer.width)
         self._render()
 
@@ -99,37 +100,37 @@ class LiveView:
 
     @property
     def playing(self) -> bool:
-        """Whether time goes on."""
+        """Whether time advances."""
         return self._task is not None and not self._task.done()
 
     @property
     def time(self) -> float:
-        """The simulated time on show, in seconds."""
+        """The displayed simulated time, in seconds."""
         return self._now_ns / 1e9
 
     @property
     def fps(self) -> float:
-        """Frames a second over the last sixty shown; 0 before there are two."""
-        if len(self._shown) < 2:
+        """The frame rate over the last sixty frames, or 0 if there are fewer than two."""
+        if len(self._frame_times) < 2:
             return 0.0
-        return (len(self._shown) - 1) / max(1e-9, self._shown[-1] - self._shown[0])
+        return (len(self._frame_times) - 1) / max(1e-9, self._frame_times[-1] - self._frame_times[0])
 
     @property
     def recording(self) -> Recording:
-        """The run so far, to be plotted, saved or replayed."""
+        """The recording of the run, which can be plotted, saved or replayed."""
         return self._source.recording()
 
     def play(self) -> None:
-        """Let time go on, from the instant on show."""
+        """Let time advance from the displayed instant."""
         if self.playing:
             return
         try:
             loop = asyncio.get_running_loop()
-        except RuntimeError:  # a script without a loop: there is nothing that could show a second frame
+        except RuntimeError:  # in a script without a loop, no second frame can be shown
             self._controls.set_playing(False)
             return
-        self._shown.clear()
-        self._source.hold(False)
+        self._frame_times.clear()
+        self._source.set_paused(False)
         self._task = loop.create_task(self._run())
         self._controls.set_playing(True)
 
@@ -138,24 +139,24 @@ class LiveView:
         if self._task is not None:
             self._task.cancel()
             self._task = None
-        self._source.hold(True)
-        if not self._source.paced:  # it went on until it heard
+        self._source.set_paused(True)
+        if not self._source.paced:  # the source has advanced until now
             self._now_ns = self._source.end_ns
         self._controls.set_playing(False)
         self._render()
 
     def step(self, seconds: float = 0.1) -> None:
-        """Pause, and go on by `seconds` of simulated time."""
+        """Pause, and simulate `seconds`."""
         self.pause()
         self._advance(round(seconds * 1e9))
 
     def seek(self, seconds: float) -> None:
-        """Show the instant `seconds`, within what has been run so far."""
+        """Show the instant `seconds`, at most the end of the run."""
         self._now_ns = min(max(0, round(seconds * 1e9)), self._source.end_ns)
         self._render()
 
     def reset(self) -> None:
-        """Go back to the start of the run and forget what came after."""
+        """Return to the start of the run, and drop its recording."""
         self.pause()
         self._source.reset()
         self._controls.clear_error()
@@ -163,17 +164,17 @@ class LiveView:
         self._render()
 
     def drive(self, command: Command) -> None:
-        """Take the first robot over by hand; `command` holds until the next one."""
+        """Drive the first robot manually. `command` is valid until the next one."""
         self._source.drive(command)
         self._controls.set_command(command)
 
     def automatic(self) -> None:
-        """Give the robot back to the callback, or to the node that drives it over ROS."""
+        """Return control of the robot to the callback, or to the node that drives it over ROS."""
         self._source.drive(None)
         self._controls.set_command(None)
 
     def set_speed(self, speed: float) -> None:
-        """Set how many simulated seconds pass in a second."""
+        """Set the number of simulated seconds per second."""
         self._speed = speed
 
     async def _run(self) -> None:
@@ -181,18 +182,17 @@ class LiveView:
         while True:
             await asyncio.sleep(max(0.0, last + period - time.perf_counter()))
             now = time.perf_counter()
-            passed, last = min(now - last, LONGEST_LEAP), now
-            if not self._advance(round(passed * self._speed * 1e9)):
+            elapsed, last = min(now - last, MAX_FRAME_SECONDS), now
+            if not self._advance(round(elapsed * self._speed * 1e9)):
                 self._task = None
                 self._controls.set_playing(False)
                 return
 
-    def _advance(self, by_ns: int) -> bool:
-        """Move the instant on show by `by_ns`; say whether there is more to come."""
-        wanted = self._now_ns + by_ns
+    def _advance(self, duration_ns: int) -> bool:
+        """Advance the displayed instant by `duration_ns`; return whether it can advance further."""
         try:
-            self._now_ns = self._source.advance(wanted)
-        except Exception as error:  # the student's callback may raise anything; it belongs in the cell
+            self._now_ns = self._source.advance(self._now_ns + duration_ns)
+        except Exception as error:  # the student's callback may raise any exception, which is shown to the student
             self._now_ns = self._source.end_ns
             self._render()
             self._controls.show_error(_callback_traceback(error))
@@ -203,7 +203,7 @@ class LiveView:
     def _render(self) -> None:
         frame, trail = self._source.at(self._now_ns), self._source.trail(self._now_ns)
         self._controls.show(self._renderer.jpeg(frame, trail), self._now_ns / 1e9, self._source.end_ns / 1e9)
-        self._shown.append(time.perf_counter())
+        self._frame_times.append(time.perf_counter())
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
         return self._controls.box._repr_mimebundle_(**kwargs)
@@ -213,7 +213,7 @@ class LiveView:
         return f"<live view of {world!r} at {self.time:.2f} s, {'playing' if self.playing else 'paused'}>"
 
 
-def _playable(source: World | Simulation | Bridge, controller: Controller | None) -> Source:
+def _source_of(source: World | Simulation | Bridge, controller: Controller | None) -> Source:
     if isinstance(source, Simulation):
         return Session(source, controller)
     if isinstance(source, World):
@@ -223,7 +223,7 @@ def _playable(source: World | Simulation | Bridge, controller: Controller | None
     return Watch(source)
 
 
-def _still(source: World | Simulation | Recording | Bridge, theme: Theme) -> Picture:
+def _still_picture(source: World | Simulation | Recording | Bridge, theme: Theme) -> Picture:
     if isinstance(source, Recording):
         return plot(source, theme=theme)
     if isinstance(source, World):
@@ -234,8 +234,8 @@ def _still(source: World | Simulation | Recording | Bridge, theme: Theme) -> Pic
 
 
 def _callback_traceback(error: BaseException) -> str:
-    """Return the traceback without the frames of this package: the student's own lines and the error."""
+    """Return the traceback of the student's code, without the frames of this package."""
     frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if _PACKAGE not in Path(frame.filename).parents]
-    lines = ["Traceback (most recent call last):\n", *traceback.format_list(own)] if own else []
+    student_frames = [frame for frame in frames if _PACKAGE not in Path(frame.filename).parents]
+    lines = ["Traceback (most recent call last):\n", *traceback.format_list(student_frames)] if student_frames else []
     return "".join([*lines, *traceback.format_exception_only(type(error), error)])

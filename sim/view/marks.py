@@ -1,6 +1,6 @@
-"""What each thing in a picture looks like: the one description that Matplotlib and the player's canvas both draw from.
+"""The styles of everything in a picture, which both Matplotlib and the player's canvas use.
 
-Lengths are points (1/72 inch). Colours are names of fields of `sim.view.theme.Theme`; OWN is the robot's own colour.
+Lengths are points (1/72 inch). Colours are names of fields of `sim.view.theme.Theme`. OWN is the robot's colour.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ OWN = "own"
 
 @dataclass(frozen=True)
 class Mark:
-    """The look of one kind of thing.
+    """The style of one kind of object.
 
     Attributes:
-        layer: what lies higher hides what lies lower.
-        fill: colour of the inside, or "" for none.
-        line: colour of the line, or "" for none.
-        width: of the line, in points.
-        dash: strokes and gaps in turn, in widths of the line; empty for a line without gaps.
-        alpha: opacity of fill and line.
-        size: in points, of a symbol that is equally large in each world: its diameter.
+        layer: the drawing order. Higher layers hide lower ones.
+        fill: the colour of the inside, or "" for none.
+        line: the colour of the line, or "" for none.
+        width: the width of the line, in points.
+        dash: the lengths of strokes and gaps in turn, in line widths; empty for a solid line.
+        alpha: the opacity of fill and line.
+        size: the diameter in points of a symbol, which has the same size in each world.
     """
 
     layer: float
@@ -68,34 +68,34 @@ MARKS: Mapping[str, Mark] = {
     "gap end": Mark(12.0, fill="alarm", size=4.5),
     "words": Mark(14.0, fill="ink", line="paper", width=3.0, size=8.5),
 }
-"""Each kind of thing by its name."""
+"""The style of each kind of object, by its name."""
 
 MIDDLE = 0.18
-"""The radius of the dot in a goal, as a share of the goal's."""
+"""The radius of the dot in a goal, as a share of the goal's radius."""
 
 POINTER = 2.6
-"""How far the line in front of a start pose reaches, in radii of the robot."""
+"""The length of the line that shows the heading of a start pose, in radii of the robot."""
 
 BEAMS = 90
-"""About so many beams of a scan are drawn as lines; each hit is drawn as a point."""
+"""The approximate number of beams of a scan that are drawn as lines. Each hit is drawn as a point."""
 
 PIECES = 48
-"""A track that moves is drawn in so many pieces, each of one colour."""
+"""The number of pieces in which a moving track is drawn, each in one colour."""
 
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 GRID = tuple((step, step * (14 if step >= 1.0 else 8)) for step in _STEPS)
-"""Distances of grid lines, each with the largest extent for which it is taken, in metres."""
+"""Distances of grid lines, each with the largest extent for which it is used, in metres."""
 
 
 def spacing_of(extent: float) -> float:
-    """Return the distance of the grid lines for something of this size; both are in metres."""
-    return next((step for step, most in GRID if extent <= most), GRID[-1][0])
+    """Return the distance of the grid lines for this extent; both are in metres."""
+    return next((step for step, max_extent in GRID if extent <= max_extent), GRID[-1][0])
 
 
-def described() -> str:
-    """Return the description as JSON, for the player."""
-    shared = {
+def to_json() -> str:
+    """Return the styles as JSON, for the player."""
+    look = {
         "marks": {name: asdict(mark) for name, mark in MARKS.items()},
         "grid": GRID,
         "middle": MIDDLE,
@@ -104,4 +104,4 @@ def described() -> str:
         "pieces": PIECES,
         "others": len(LIGHT.others),
     }
-    return json.dumps(shared, separators=(",", ":"))
+    return json.dumps(look, separators=(",", ":"))

@@ -1,6 +1,6 @@
-"""A finished figure that shows itself in a notebook, and gives its bytes to whoever needs them.
+"""A finished figure, which a notebook displays and which can be converted to PNG, SVG or HTML.
 
-It is made of `matplotlib.figure.Figure` and never of pyplot: nothing is registered, no backend is chosen, and it is the
+It uses `matplotlib.figure.Figure` without pyplot: nothing is registered, no backend is chosen, and the result is the
 same in a notebook, in a test and in the grader. The same drawing gives the same bytes.
 """
 
@@ -24,7 +24,7 @@ DPI = 144
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure with the sentence that stands for it where it can't be seen."""
+    """A figure with its alternative text."""
 
     figure: Figure
     alt: str
@@ -34,14 +34,14 @@ class Picture:
         return self._bytes("png", dpi, {"Software": None, "Description": self.alt})
 
     def svg(self) -> bytes:
-        """Return the picture as SVG bytes, letters drawn as outlines."""
+        """Return the picture as SVG bytes, with letters as outlines."""
         return self._bytes("svg", DPI, {"Date": None, "Creator": None, "Description": self.alt})
 
     def save(self, path: str | Path, dpi: int = DPI) -> Path:
         """Write the picture to `path`, whose name ends in .png or .svg, and return the path.
 
         Raises:
-            ValueError: if the name ends in something else.
+            ValueError: the name has another suffix.
         """
         path = Path(path)
         kind = path.suffix.lower()
@@ -61,14 +61,14 @@ class Picture:
 
     def html(self, dpi: int = DPI) -> str:
         """Return the picture as an HTML element, with its alternative text."""
-        encoded = base64.b64encode(self.png(dpi)).decode("ascii")
+        encoded_png = base64.b64encode(self.png(dpi)).decode("ascii")
         width = round(self.figure.get_figwidth() * 96)
         text = html.escape(self.alt, quote=True)
-        return f'<img alt="{text}" width="{width}" style="max-width:100%" src="data:image/png;base64,{encoded}">'
+        return f'<img alt="{text}" width="{width}" style="max-width:100%" src="data:image/png;base64,{encoded_png}">'
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Offer HTML first (it carries the alternative text), PNG for viewers that drop images from HTML."""
-        encoded = base64.b64encode(self.png()).decode("ascii")
+        """Return HTML, which contains the alternative text, and PNG for viewers that remove images from HTML."""
+        encoded_png = base64.b64encode(self.png()).decode("ascii")
         width = round(self.figure.get_figwidth() * 96)
-        bundle = {"text/html": self.html(), "image/png": encoded, "text/plain": self.alt}
+        bundle = {"text/html": self.html(), "image/png": encoded_png, "text/plain": self.alt}
         return bundle, {"image/png": {"alt": self.alt, "width": width}}

@@ -1,4 +1,4 @@
-// Plays recorded runs. Each .run-player holds a run as JSON; it gets a canvas, buttons and a time line for each rule.
+// Plays recorded runs. Each .run-player contains a run as JSON, and gets a canvas, buttons and a time line for each rule.
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const HELP = "Keys work while the mouse is here. Space plays and pauses. The arrow keys move by 0.1 s, with Shift by 1 s. Home and End go "
   + "to the ends. B goes to the instant at which a rule broke. L goes to the next line of the log, with Shift to the one before. "
@@ -85,14 +85,14 @@ const start = async root => {
     b: () => { if (broken.length) show(Math.min(...broken)); },
     "+": () => view.zoomAt(1.5), "=": () => view.zoomAt(1.5), "-": () => view.zoomAt(1 / 1.5), "0": view.whole, f: view.follow,
   };
-  // A key is for the player below the mouse, unless somebody types elsewhere; else for the one that has the focus, or for
-  // the only one of a page.
+  // A key is for the player below the mouse, unless the focus is in a text field elsewhere. Otherwise it is for the player
+  // with the focus, or for the only one of a page.
   const isMine = target => {
     const inside = target.closest(".run-player");
     if (!inside && (target.isContentEditable || target.closest("input, textarea, select"))) return false;
     return (document.querySelector(".run-player:hover") || inside || document.querySelector(".run-player[data-alone]")) === root;
   };
-  window.addEventListener("keydown", event => { // the window hears a key before a notebook does
+  window.addEventListener("keydown", event => { // the window receives a key before a notebook does
     const {target} = event;
     if (!root.isConnected || !(target instanceof Element) || !keys[event.key] || !isMine(target)) return;
     const press = target.closest("button, a, summary") && event.key === " ";
@@ -101,13 +101,13 @@ const start = async root => {
     event.stopImmediatePropagation();
     keys[event.key](event);
   }, true);
-  if (window !== window.top) root.addEventListener("pointerenter", () => window.focus()); // else a frame hears no key
+  if (window !== window.top) root.addEventListener("pointerenter", () => window.focus()); // otherwise a frame receives no keys
   button.addEventListener("click", () => setPlaying(!playing));
   form.addEventListener("submit", event => event.preventDefault());
   slider.addEventListener("input", () => show(Number(slider.value)));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", resize);
   root.classList.add("run-ready");
-  let wide = 0; // a wider readout makes the stage higher, which is nothing to draw anew
+  let wide = 0; // only a new width needs a redraw, not the height, which a longer readout increases
   new ResizeObserver(() => { if (stage.clientWidth !== wide) { wide = stage.clientWidth; resize(); } }).observe(stage);
   resize();
 
@@ -120,7 +120,7 @@ const start = async root => {
     root.scrollIntoView();
   };
   if (link) { window.addEventListener("hashchange", followLink); followLink(); }
-  // Play once, when the run is seen for the first time. One that broke stands at the instant that broke.
+  // Play once, when the run becomes visible for the first time. A run that broke a rule shows that instant instead.
   if (!root.dataset.play || chosen !== null || matchMedia("(prefers-reduced-motion: reduce)").matches) return;
   new IntersectionObserver(([seen], observer) => {
     if (!seen.isIntersecting) return;

@@ -1,7 +1,7 @@
-"""The player of a recorded run: HTML with the run in it, a style sheet and a script, and nothing to load.
+"""The player of a recorded run: self-contained HTML with the run, a style sheet and a script.
 
-One player serves the notebook, an exported page and an autograder's feedback. Without its script, for example on
-paper or where a notebook is not trusted, there is a picture instead.
+The same player is used in notebooks, exported pages and the autograder's feedback. Without its script, for example on
+paper or in a notebook that is not trusted, it shows a picture.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 from sim.recording import Recording
 from sim.view.figures import plot
-from sim.view.marks import described
+from sim.view.marks import to_json
 from sim.view.picture import DPI, Picture
 from sim.view.run_data import Margin, encode
 from sim.view.theme import DARK, LIGHT, Theme
@@ -23,16 +23,16 @@ _PARTS = ("player_data", "player_drawing", "player_view", "player_lists", "playe
 
 SCRIPT = "\n".join(
     [
-        f'(() => {{\n"use strict";\nconst LOOK = {described()};',
+        f'(() => {{\n"use strict";\nconst LOOK = {to_json()};',
         *((_HERE / f"{part}.js").read_text(encoding="utf-8") for part in _PARTS),
         "})();",
     ]
 )
-"""The script that brings every `div.run-player` above it to life."""
+"""The script that makes every `div.run-player` above it interactive."""
 
 
 class Player:
-    """A recorded run that plays where it is shown: in a notebook, or in a page."""
+    """A player for a recorded run, in a notebook or in a page."""
 
     def __init__(
         self,
@@ -45,16 +45,16 @@ class Player:
         play: bool = False,
         note: str = "",
     ) -> None:
-        """Prepare the run.
+        """Encode the run.
 
         Args:
             recording: the run.
-            margins: the rules that it was judged by, each shown as a time line.
-            still: the picture where nothing can play; the track by default.
-            theme: "light", "dark", or "auto", the reader's choice.
-            speed: simulated seconds in a second at first: 0.25, 0.5, 1, 2 or 4.
-            play: whether it plays once when it is seen. A run that broke a rule stands at that instant instead.
-            note: what is said of the instant at which a rule broke.
+            margins: the rules for the run, each shown as a time line.
+            still: the picture that is shown where the player cannot run, by default the track.
+            theme: "light", "dark", or "auto" to follow the reader's settings.
+            speed: the initial number of simulated seconds per second: 0.25, 0.5, 1, 2 or 4.
+            play: whether the run plays once when it becomes visible. If it broke a rule, that instant is shown instead.
+            note: the text for the instant at which a rule was broken.
         """
         self.recording = recording
         self._still = still or plot(recording)
@@ -65,7 +65,7 @@ class Player:
         return self._still.alt
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Offer HTML first, PNG for viewers without it."""
+        """Return HTML, and PNG for viewers without HTML."""
         bundle, metadata = self._still._repr_mimebundle_()
         player = markup(self._data, _image(self._still), **self._options)
         bundle["text/html"] = f"<style>{style()}</style>{player}<script>{SCRIPT}</script>"
@@ -76,15 +76,15 @@ def markup(data: str, still: str = "", **attributes: str) -> str:
     """Return the HTML of a player, for a page that has `style()` and, below all players, `SCRIPT`.
 
     Args:
-        data: what `encode` returned.
-        still: the HTML of the picture that stands for the run on paper, of the class "run-still".
-        attributes: of the element: its `id`, what a `Player` has as options, `data-first` of the player that a link
-            without a run means, and `data-alone` of one that gets all keys of its page.
+        data: the result of `encode`.
+        still: the HTML of the picture for paper, with the class "run-still".
+        attributes: the attributes of the element: its `id`, the options of a `Player`, `data-first` for the player to
+            which a link without a run refers, and `data-alone` for a player that handles all keys of its page.
     """
-    given = "".join(f' {name}="{html.escape(value, quote=True)}"' for name, value in attributes.items())
+    attribute_text = "".join(f' {name}="{html.escape(value, quote=True)}"' for name, value in attributes.items())
     name = "run-player run-still-there" if still else "run-player"
     return (
-        f'<div class="{name}" data-lm-suppress-shortcuts="true"{given}>{still}'
+        f'<div class="{name}" data-lm-suppress-shortcuts="true"{attribute_text}>{still}'
         f'<script type="application/json">{data}</script></div>'
     )
 
@@ -100,7 +100,7 @@ def style() -> str:
 
 
 def page(recording: Recording, margins: Sequence[Margin] = ()) -> str:
-    """Return a whole page that plays a run, light or dark as its reader likes it."""
+    """Return a page that plays a run, light or dark as in the reader's settings."""
     title = html.escape(f"{recording.simulation.world.name}: {recording.times[-1]:.1f} s")
     still = plot(recording)
     options = {"data-theme": "auto", "data-alone": "yes"}
@@ -120,7 +120,7 @@ def page(recording: Recording, margins: Sequence[Margin] = ()) -> str:
 
 
 def _image(still: Picture, dpi: int = DPI) -> str:
-    """Return the HTML of the picture where nothing can play."""
+    """Return the HTML of the picture that is shown where the player cannot run."""
     return still.html(dpi).replace("<img ", '<img class="run-still" ', 1)
 
 

@@ -1,9 +1,9 @@
-// Unpacks a run that `encode` packed. One that an earlier version packed lacks a few things.
+// Unpacks a run that `encode` packed. A run from an earlier version lacks some fields.
 const inflate = text => {
   const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate")));
 };
-// The text of `pack`: base64, deflated, the bytes of a number apart, changes instead of values.
+// Decodes the text of `pack`: base64, deflated, the bytes of a number in separate planes, differences of rows.
 const unpack = async packed => {
   if (!packed) return null;
   const planes = new Uint8Array(await inflate(packed.data).arrayBuffer());
@@ -43,7 +43,7 @@ const unpackRun = async data => {
   return run;
 };
 
-// The place of the last time that is not later than `now`; -1 before the first.
+// Returns the index of the last time that is not later than `now`, or -1 before the first.
 const last = (times, now) => {
   let low = 0, high = times.length;
   while (low < high) {

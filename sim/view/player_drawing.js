@@ -1,7 +1,7 @@
-// Draws a run as LOOK describes its marks. Coordinates are metres; `dot` is a pixel of the page, in metres.
+// Draws a run with the styles in LOOK. Coordinates are in metres, and `dot` is the size of a page's pixel in metres.
 const POINT = 4 / 3; // pixels
-const AHEAD = 2; // s: how far the way of the newest command is drawn
-const MET = 1; // s: how long a robot shows that it has met something
+const AHEAD = 2; // s: the duration of the path that is drawn for the latest command
+const MET_SECONDS = 1; // s: the duration for which a robot shows a collision
 
 const line = points => { const path = new Path2D(); points.forEach(([x, y]) => path.lineTo(x, y)); return path; };
 const loop = points => { const path = line(points); path.closePath(); return path; };
@@ -14,7 +14,7 @@ const cross = (x, y, radius, path) => {
   for (const side of [-1, 1]) { path.moveTo(x - radius, y - side * radius); path.lineTo(x + radius, y + side * radius); }
 };
 
-// A sheet collects what is to be drawn, and draws the lowest layer first. `place` turns metres into pixels.
+// A sheet collects shapes, and draws the lowest layer first. `place` converts metres to pixels.
 const makeSheet = (pen, colour, dot, place) => {
   const marks = [];
   const ink = (name, own) => name === "own" ? own : colour(name);
@@ -60,7 +60,7 @@ const makeSheet = (pen, colour, dot, place) => {
 
 const reach = robot => Math.max(...robot.body.map(([x, y]) => Math.hypot(x, y)));
 
-// What stands still: room, furniture, walls, goals, starts, and the routes of what moves.
+// Draws what does not move: room, furniture, walls, goals, starts, and the routes of moving obstacles.
 const makeWorld = run => {
   const {world} = run, parts = [["floor", loop(world.room)]], walls = new Path2D();
   for (const points of world.solid) parts.push(["solid", loop(points)]);
@@ -102,11 +102,11 @@ const drawScan = (sheet, robot, now) => {
 const channel = (colour, place) => parseInt(colour.slice(1 + 2 * place, 3 + 2 * place), 16);
 const mixed = (one, other, share) =>
   `rgb(${[0, 1, 2].map(place => Math.round((1 - share) * channel(one, place) + share * channel(other, place)))})`;
-// Light at the start, dark at the end, in the robot's own colour.
+// The robot's colour, light at the start and dark at the end.
 const hue = (colour, kind, share) => share < 0.5 ? mixed(colour(`early${kind}`), colour(`own${kind}`), 2 * share)
   : mixed(colour(`own${kind}`), colour(`late${kind}`), 2 * share - 1);
 
-// A track in pieces, each of one colour: what has been driven is strong, what is to come is thin.
+// Draws a track in pieces, each of one colour. The driven part is thick, the future part thin.
 const makeTrack = (run, robot, kind) => {
   const rows = robot.poses.length - 1, whole = line(robot.poses), begin = run.times[0], span = run.times[rows] - begin || 1;
   const cuts = Array.from({length: LOOK.pieces + 1}, (_, number) => Math.round(number * rows / LOOK.pieces));
@@ -122,7 +122,7 @@ const makeTrack = (run, robot, kind) => {
   };
 };
 
-// Where the robot is between two rows of the recording.
+// Interpolates the robot's pose between two rows of the recording.
 const poseAt = (run, robot, now, row) => {
   const from = robot.poses[row], to = robot.poses[Math.min(row + 1, robot.poses.length - 1)];
   const span = (run.times[row + 1] ?? now) - run.times[row];
@@ -132,7 +132,7 @@ const poseAt = (run, robot, now, row) => {
 
 const drawRobot = (sheet, run, robot, kind, now, row) => {
   const [x, y, turn] = poseAt(run, robot, now, row), own = sheet.colour(`own${kind}`);
-  if (robot.commands && now >= robot.commanded && now < run.times[run.times.length - 1]) { // if the newest command is obeyed
+  if (robot.commands && now >= robot.commanded && now < run.times[run.times.length - 1]) { // draw the latest command
     const [linear, angular] = robot.commands[row], way = [];
     for (let px = x, py = y, angle = turn, at = 0; at <= AHEAD; at += 0.05) {
       way.push([px, py]);
@@ -142,7 +142,7 @@ const drawRobot = (sheet, run, robot, kind, now, row) => {
   }
   const placed = points => loop(points.map(([px, py]) =>
     [x + Math.cos(turn) * px - Math.sin(turn) * py, y + Math.sin(turn) * px + Math.cos(turn) * py]));
-  const met = run.collisions.some(([when, , , , who]) => who === robot.name && when <= now + 1e-6 && now - when < MET);
+  const met = run.collisions.some(([when, , , , who]) => who === robot.name && when <= now + 1e-6 && now - when < MET_SECONDS);
   sheet.add("halo", disc(x, y, sheet.radius("halo")), own);
   sheet.add("body", placed(robot.body), met ? sheet.colour("alarm") : own);
   sheet.add("nose", placed(robot.nose));
@@ -157,7 +157,7 @@ const drawCollisions = (sheet, run, now) => {
   }
 };
 
-// The closest place of the run, or the instant that was chosen: its line to what is nearest, and its words.
+// Draws the nearest approach of the run, or the chosen instant: its line to the nearest obstacle, and its text.
 const drawMoment = (sheet, run, now) => {
   const {moment} = run;
   if (!moment) return;
@@ -173,7 +173,7 @@ const drawMoment = (sheet, run, now) => {
     sheet.write(moment.words, at, [18 * side, at[1] > (low + high) / 2 ? 24 : -30], side > 0 ? "left" : "right");
 };
 
-// Returns a function that puts all of an instant on a sheet.
+// Returns a function that draws an instant on a sheet.
 const makeScene = run => {
   const kinds = run.robots.map((_, index) => index && 1 + (index - 1) % LOOK.others);
   const addWorld = makeWorld(run), tracks = run.robots.map((robot, index) => makeTrack(run, robot, kinds[index]));

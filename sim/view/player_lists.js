@@ -1,4 +1,4 @@
-// What is below the canvas: a time line for each rule, and what the programs wrote.
+// The lists below the canvas: a time line for each rule, and the output of the programs.
 const make = (tag, attributes = {}, parent = null) => {
   const node = tag === "svg" || parent instanceof SVGElement
     ? document.createElementNS("http://www.w3.org/2000/svg", tag) : document.createElement(tag);
@@ -9,7 +9,7 @@ const make = (tag, attributes = {}, parent = null) => {
 };
 const signed = value => (value < 0 ? "\u2212" : "+") + Math.abs(value).toFixed(2);
 
-// Returns a function that shows an instant. `show` is called with the instant that somebody asks for.
+// Returns a function that shows an instant. `show` is called with an instant that the user selects.
 const makeMargin = (stage, margin, begin, end, show) => {
   const box = make("div", {class: "run-margin"}, stage), row = make("div", {class: "run-row"}, box);
   const name = make("span", {}, row);
@@ -36,7 +36,7 @@ const makeMargin = (stage, margin, begin, end, show) => {
   };
 };
 
-// Returns a function that shows an instant. A text is set as text, so nothing in it is markup.
+// Returns a function that shows an instant. Lines are set as text, so they cannot contain markup.
 const makeLog = (stage, said, show) => {
   make("p", {class: "run-heading", text: "What the programs wrote"}, stage);
   const list = make("ol", {class: "run-log", tabindex: "0", "aria-label": "What the programs wrote"}, stage);
@@ -59,7 +59,7 @@ const makeLog = (stage, said, show) => {
   };
 };
 
-// What is said of each robot at an instant: how it moves, what it was told, how near the nearest thing is.
+// Shows each robot's data at an instant: its velocity, its command, and the distance of the nearest obstacle.
 const makeReadout = (stage, run) => {
   const box = make("div", {class: "run-said"}, stage), velocity = ([linear, angular]) => `${signed(linear)} m/s, ${signed(angular)} rad/s`;
   const rows = run.robots.map(robot => {
@@ -73,7 +73,7 @@ const makeReadout = (stage, run) => {
       const gap = robot.gaps[row] < 999 ? ` \u00b7 gap ${Math.max(0, robot.gaps[row]).toFixed(2)} m` : "";
       words.textContent = `moves ${velocity(robot.velocities[row])}${ordered}${gap}`;
       const met = run.collisions.filter(([when, , , , who = robot.name]) =>
-        who === robot.name && when <= now + 1e-6 && now - when < MET);
+        who === robot.name && when <= now + 1e-6 && now - when < MET_SECONDS);
       hit.textContent = met.length ? ` \u00b7 ${met[met.length - 1][3]}` : "";
     }
   };

@@ -1,8 +1,8 @@
 // The part of the world that a canvas shows: axes in metres, zoom, pan, and following a robot.
 const EDGE = {left: 42, right: 8, top: 4, bottom: 20}; // pixels around the world, for the axes
-const NARROWEST = 26; // pixels between two lines of the grid
-const DEEPEST = 20; // times
-const FOLLOWING = 3; // times, if the whole world was shown
+const MIN_SPACING = 26; // the minimum number of pixels between two lines of the grid
+const MAX_ZOOM = 20; // the maximum zoom factor
+const FOLLOWING_ZOOM = 3; // the zoom factor for following, if the whole world was shown
 
 const makeView = (stage, canvas, run, colour, changed) => {
   const [left, low, right, high] = run.world.bounds, [innerLeft, innerLow, innerRight, innerHigh] = run.world.inside;
@@ -18,10 +18,10 @@ const makeView = (stage, canvas, run, colour, changed) => {
     canvas.style.touchAction = zoom > 1 ? "none" : "pan-y";
     canvas.style.cursor = zoom > 1 ? "grab" : "";
   };
-  // Zoom by a factor; the place (px, py) of the canvas, in pixels, keeps showing what it shows.
+  // Zooms by a factor around the point (px, py) of the canvas, in pixels.
   const zoomAt = (factor, px = EDGE.left + width / 2, py = EDGE.top + height / 2) => {
     const before = scale(), [dx, dy] = [px - EDGE.left - width / 2, py - EDGE.top - height / 2];
-    zoom = within(zoom * factor, 1, DEEPEST);
+    zoom = within(zoom * factor, 1, MAX_ZOOM);
     if (followed < 0) [x, y] = [x + dx / before - dx / scale(), y - dy / before + dy / scale()];
     settle();
     changed();
@@ -29,7 +29,7 @@ const makeView = (stage, canvas, run, colour, changed) => {
   const whole = () => { [zoom, followed] = [1, -1]; settle(); changed(); };
   const follow = () => {
     followed = (followed + 2) % (run.robots.length + 1) - 1;
-    if (followed >= 0 && zoom === 1) zoom = FOLLOWING;
+    if (followed >= 0 && zoom === 1) zoom = FOLLOWING_ZOOM;
     settle();
     changed();
   };
@@ -38,10 +38,10 @@ const makeView = (stage, canvas, run, colour, changed) => {
     const first = Math.ceil(from / step - 1e-9), count = Math.floor(to / step + 1e-9) - first + 1;
     return Array.from({length: Math.max(0, count)}, (_, number) => (first + number) * step);
   };
-  // Returns where the lines of the grid are, across and up.
+  // Returns the positions of the grid's lines, across and up.
   const axes = () => {
     const extent = Math.max(innerRight - innerLeft, innerHigh - innerLow) / zoom;
-    const [step] = LOOK.grid.find(([size, most]) => extent <= most && size * scale() >= NARROWEST) || LOOK.grid[LOOK.grid.length - 1];
+    const [step] = LOOK.grid.find(([size, most]) => extent <= most && size * scale() >= MIN_SPACING) || LOOK.grid[LOOK.grid.length - 1];
     const wide = (right - left) / zoom / 2, tall = (high - low) / zoom / 2;
     return [ticks(Math.max(innerLeft, x - wide), Math.min(innerRight, x + wide), step),
       ticks(Math.max(innerLow, y - tall), Math.min(innerHigh, y + tall), step)];
@@ -78,7 +78,7 @@ const makeView = (stage, canvas, run, colour, changed) => {
     sheet.draw();
     pen.restore();
   };
-  // Take the width of the stage, if it has one, and the height of the world, within that of the window.
+  // Uses the width of the stage, if it has one, and the height of the world, limited to that of the window.
   const resize = () => {
     const shape = (high - low) / (right - left);
     width = Math.min(stage.clientWidth - EDGE.left - EDGE.right, 0.7 * window.innerHeight / shape);
@@ -110,7 +110,7 @@ const makeView = (stage, canvas, run, colour, changed) => {
   });
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, event => fingers.delete(event.pointerId));
   canvas.addEventListener("dblclick", event => zoomAt(2, ...at(event)));
-  canvas.addEventListener("wheel", event => { // without Ctrl, the wheel moves the page
+  canvas.addEventListener("wheel", event => { // without Ctrl, the wheel scrolls the page
     if (!event.ctrlKey && !event.metaKey) return;
     event.preventDefault();
     zoomAt(Math.exp(-event.deltaY / 300), ...at(event));

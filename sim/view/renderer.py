@@ -1,7 +1,7 @@
-"""Frames for the live view: the world, and beside it the scan as the robot sees it, drawn by blitting.
+"""Draws frames for the live view by blitting: the world, and beside it the scan in the robot's frame.
 
-The walls are drawn once and kept as pixels. A frame puts them back, draws only what moves, and encodes the canvas. On
-the machine this was written on a frame takes some milliseconds, most of it the encoding.
+The walls are drawn once, and their pixels are stored. Each frame restores them, draws only what moves, and encodes the
+canvas. A frame takes a few milliseconds, most of which is encoding.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from sim.view.theme import STYLE, Theme
 from sim.world import World
 
 WIDTH, HEIGHT = 5.8, 4.6
-"""Inches that the world has at most."""
+"""The maximum size of the world in inches."""
 
-SIGHT = 3.2
-"""Inches of the scan as the robot sees it, beside the world."""
+SCAN_SIZE = 3.2
+"""The size in inches of the scan in the robot's frame, beside the world."""
 
 _LEFT, _BETWEEN, _RIGHT, _BOTTOM, _TOP = 0.44, 0.25, 0.11, 0.34, 0.38
-"""Inches of paper around the two."""
+"""The margins around the world and the scan, and between them, in inches."""
 
 
 class Renderer:
@@ -55,17 +55,17 @@ class Renderer:
             sheet, boxes = _sheet(simulation.world)
             figure = Figure(figsize=sheet, dpi=dpi, facecolor=theme.paper)
             self._canvas: Any = FigureCanvasAgg(figure)
-            self._world, self._sight = (figure.add_axes(box) for box in boxes)
+            self._world, self._scan_axes = (figure.add_axes(box) for box in boxes)
             artists.set_stage(self._world, simulation.world, theme)
             artists.draw_walls(self._world, simulation.world, theme)
             artists.draw_places(self._world, simulation.world, theme, radius=simulation.robots[0].radius)
             if names:
                 write_names(self._world, simulation.world, theme)
-            self._centre = _sight_stage(self._sight, simulation, theme)
-            self._moving = self._add_moving()
-            self._said: tuple[str, str, bool] | None = None
-            self._above = Bbox.from_extents(0, math.ceil(self._world.bbox.y1), figure.bbox.width, figure.bbox.height)
-            for artist in (*self._moving, self._clock, self._words):
+            self._local_robot = _prepare_scan_axes(self._scan_axes, simulation, theme)
+            self._moving_artists = self._add_moving_artists()
+            self._texts: tuple[str, str, bool] | None = None
+            self._text_box = Bbox.from_extents(0, math.ceil(self._world.bbox.y1), figure.bbox.width, figure.bbox.height)
+            for artist in (*self._moving_artists, self._time_text, self._speed_text):
                 artist.set_animated(True)
             canvas: Any = self._canvas
             canvas.draw()
@@ -77,13 +77,13 @@ class Renderer:
         return int(self._canvas.get_width_height()[0])
 
     def draw(self, frame: Frame, trail: Floats | None = None) -> Image.Image:
-        """Return the frame as an RGB image; `trail` is the first robot's track so far, (K, 2) in metres."""
-        return self._drawn(frame, trail, "RGBA").convert("RGB")
+        """Return the frame as an RGB image. `trail` is the first robot's track, (K, 2) in metres."""
+        return self._draw_canvas(frame, trail, "RGBA").convert("RGB")
 
     def jpeg(self, frame: Frame, trail: Floats | None = None, quality: int = 84) -> bytes:
-        """Return the frame as JPEG, colours at full resolution so that thin lines stay clean."""
+        """Return the frame as JPEG, with colours at full resolution to keep thin lines sharp."""
         stream = io.BytesIO()
-        self._drawn(frame, trail, "RGBX").save(stream, "JPEG", quality=quality, subsampling=0)
+        self._draw_canvas(frame, trail, "RGBX").save(stream, "JPEG", quality=quality, subsampling=0)
         return stream.getvalue()
 
     def png(self, frame: Frame, trail: Floats | None = None) -> bytes:
@@ -92,10 +92,10 @@ class Renderer:
         self.draw(frame, trail).save(stream, "PNG", compress_level=1)
         return stream.getvalue()
 
-    def _drawn(self, frame: Frame, trail: Floats | None, mode: str) -> Image.Image:
+    def _draw_canvas(self, frame: Frame, trail: Floats | None, mode: str) -> Image.Image:
         self._canvas.restore_region(self._background)
         self._update(frame, trail)
-        for artist in self._moving:
+        for artist in self._moving_artists:
             if artist.get_visible() and artist.axes is not None:
                 artist.axes.draw_artist(artist)
         self._write(frame)
@@ -103,24 +103,24 @@ class Renderer:
         return Image.frombuffer(mode, (width, height), self._canvas.buffer_rgba(), "raw", mode, 0, 1)
 
     def _write(self, frame: Frame) -> None:
-        """Write the time and the speed above the axes; letters are slow, so that they are kept until they change."""
+        """Write the time and the speed above the axes. Text is slow to draw, so its pixels are reused."""
         first = frame.state.robots[0]
         speed = f"{first.velocity.linear:+.2f} m/s   {first.velocity.angular:+.2f} rad/s"
-        said = (f"{frame.state.time_ns / 1e9:.1f} s", speed, first.collided)
-        if said != self._said:
-            self._clock.set_text(said[0])
-            self._words.set_text(speed + ("  ·  blocked" if first.collided else ""))
-            self._words.set_color(self._theme.alarm if first.collided else self._theme.muted)
-            self._world.draw_artist(self._clock)
-            self._sight.draw_artist(self._words)
-            self._said, self._line = said, self._canvas.copy_from_bbox(self._above)
+        texts = (f"{frame.state.time_ns / 1e9:.1f} s", speed, first.collided)
+        if texts != self._texts:
+            self._time_text.set_text(texts[0])
+            self._speed_text.set_text(speed + ("  ·  blocked" if first.collided else ""))
+            self._speed_text.set_color(self._theme.alarm if first.collided else self._theme.muted)
+            self._world.draw_artist(self._time_text)
+            self._scan_axes.draw_artist(self._speed_text)
+            self._texts, self._text_pixels = texts, self._canvas.copy_from_bbox(self._text_box)
         else:
-            self._canvas.restore_region(self._line)
+            self._canvas.restore_region(self._text_pixels)
 
-    def _add_moving(self) -> list[Artist]:
-        theme, world, sight = self._theme, self._world, self._sight
+    def _add_moving_artists(self) -> list[Artist]:
+        theme, world, scan_axes = self._theme, self._world, self._scan_axes
         simulation = self._simulation
-        self._seen: Any = world.add_patch(Polygon(np.zeros((3, 2)), closed=True, **area("seen", theme)))
+        self._free_area: Any = world.add_patch(Polygon(np.zeros((3, 2)), closed=True, **area("seen", theme)))
         (self._rays,) = world.plot([], [], **line("ray", theme))
         (self._hits,) = world.plot([], [], **symbol("hit", theme))
         mark = MARKS["track"]
@@ -142,21 +142,21 @@ class Renderer:
             self._bodies.append((body, nose))
             if len(simulation.robots) > 1:
                 self._names.append(artists.name_text(world, spec.name, theme))
-        self._near_seen: Any = sight.add_patch(Polygon(np.zeros((3, 2)), closed=True, **area("seen", theme)))
-        (self._near_rays,) = sight.plot([], [], **line("ray", theme))
-        (self._near_hits,) = sight.plot([], [], **symbol("hit", theme))
+        self._local_free_area: Any = scan_axes.add_patch(Polygon(np.zeros((3, 2)), closed=True, **area("seen", theme)))
+        (self._local_rays,) = scan_axes.plot([], [], **line("ray", theme))
+        (self._local_hits,) = scan_axes.plot([], [], **symbol("hit", theme))
         style: dict[str, Any] = {
             "textcoords": "offset points",
             "xycoords": "axes fraction",
             "annotation_clip": False,
             "fontsize": 9.5,
         }
-        self._clock = world.annotate("", (0, 1), (0, 6), color=theme.ink, **style)
-        self._words = sight.annotate("", (0, 1), (0, 6), color=theme.muted, **style)
-        pairs = [part for pair in self._bodies for part in pair]
+        self._time_text = world.annotate("", (0, 1), (0, 6), color=theme.ink, **style)
+        self._speed_text = scan_axes.annotate("", (0, 1), (0, 6), color=theme.muted, **style)
+        bodies = [part for pair in self._bodies for part in pair]
         return [
-            *(self._seen, self._rays, self._trail, *self._movers, self._hits, *self._halos, *pairs, *self._names),
-            *(self._near_seen, self._near_rays, *self._centre, self._near_hits),
+            *(self._free_area, self._rays, self._trail, *self._movers, self._hits, *self._halos, *bodies, *self._names),
+            *(self._local_free_area, self._local_rays, *self._local_robot, self._local_hits),
         ]
 
     def _update(self, frame: Frame, trail: Floats | None) -> None:
@@ -168,7 +168,7 @@ class Renderer:
             body.set_facecolor(self._theme.alarm if robot.collided else self._theme.robot_colour(index))
             self._halos[index].set_data([robot.pose.x], [robot.pose.y])
         for text, robot, spec in zip(self._names, state.robots, self._simulation.robots, strict=False):
-            text.xy = artists.name_place(spec, robot.pose)  # a single robot has no name
+            text.xy = artists.anchor_of_name(spec, robot.pose)  # `_names` is empty for a single robot
         for patch, centre in zip(self._movers, movers_at(self._simulation, state.time_ns), strict=True):
             patch.center = centre
         pieces = _pieces(np.empty((0, 2)) if trail is None else trail)
@@ -177,48 +177,48 @@ class Renderer:
         self._update_scan(frame.scans[0])
 
     def _update_scan(self, newest: tuple[Scan, Pose] | None) -> None:
-        parts = (self._seen, self._rays, self._hits, self._near_seen, self._near_rays, self._near_hits)
-        shown = newest is not None and self._lidar is not None
+        parts = (self._free_area, self._rays, self._hits, self._local_free_area, self._local_rays, self._local_hits)
+        is_visible = newest is not None and self._lidar is not None
         for part in parts:
-            part.set_visible(shown)
+            part.set_visible(is_visible)
         if newest is None or self._lidar is None:
             return
         scan, pose = newest
-        _set_scan(scan, self._lidar, pose, self._seen, self._rays, self._hits)
+        _set_scan(scan, self._lidar, pose, self._free_area, self._rays, self._hits)
         upward = Pose(0.0, 0.0, math.pi / 2)  # x of base_link points up on the paper
-        _set_scan(scan, self._lidar, upward, self._near_seen, self._near_rays, self._near_hits)
+        _set_scan(scan, self._lidar, upward, self._local_free_area, self._local_rays, self._local_hits)
 
 
 def _sheet(world: World) -> tuple[tuple[float, float], list[tuple[float, float, float, float]]]:
-    """Return the size of a frame in inches, and the boxes of world and scan in shares of it, with no paper unused."""
+    """Return the size of a frame in inches, and the boxes of the world and the scan as shares of it."""
     left, low, right, high = world.bounds
     across, up = (side + 2 * margin_of(world) for side in (max(right - left, 0.1), max(high - low, 0.1)))
     scale = min(WIDTH / across, HEIGHT / up)
     width, height = max(across * scale, 1.5), max(up * scale, 0.5)
-    sheet = (_LEFT + width + _BETWEEN + SIGHT + _RIGHT, max(_BOTTOM + height, SIGHT) + _TOP)
+    sheet = (_LEFT + width + _BETWEEN + SCAN_SIZE + _RIGHT, max(_BOTTOM + height, SCAN_SIZE) + _TOP)
     top = sheet[1] - _TOP
-    boxes = ((_LEFT, top - height, width, height), (_LEFT + width + _BETWEEN, top - SIGHT, SIGHT, SIGHT))
+    boxes = ((_LEFT, top - height, width, height), (_LEFT + width + _BETWEEN, top - SCAN_SIZE, SCAN_SIZE, SCAN_SIZE))
     return sheet, [(x / sheet[0], y / sheet[1], w / sheet[0], h / sheet[1]) for x, y, w, h in boxes]
 
 
 def _pieces(track: Floats) -> list[Floats]:
-    """Return a track (K, 2) in at most `PIECES` pieces, each of which begins where the one before ends."""
+    """Divide a track (K, 2) into at most `PIECES` pieces, each of which begins at the end of the previous one."""
     cuts = np.unique(np.linspace(0, max(0, len(track) - 1), PIECES + 1).round().astype(int)).tolist()
     return [track[start : end + 1] for start, end in pairwise(cuts)]
 
 
-def _set_scan(scan: Scan, lidar: LidarSpec, pose: Pose, seen: Polygon, rays: Any, hits: Any) -> None:
-    mount, ends, hit = beam_ends(scan.ranges, lidar, pose)
-    seen.set_xy(ends if is_full_turn(lidar) else np.vstack([mount, ends]))
-    chosen = artists.chosen_beams(hit)
-    lines = np.full((3 * len(chosen), 2), np.nan)
-    lines[0::3], lines[1::3] = mount, ends[chosen]
+def _set_scan(scan: Scan, lidar: LidarSpec, pose: Pose, free_area: Polygon, rays: Any, hits: Any) -> None:
+    mount, ends, has_hit = beam_ends(scan.ranges, lidar, pose)
+    free_area.set_xy(ends if is_full_turn(lidar) else np.vstack([mount, ends]))
+    beam_indices = artists.chosen_beams(has_hit)
+    lines = np.full((3 * len(beam_indices), 2), np.nan)
+    lines[0::3], lines[1::3] = mount, ends[beam_indices]
     rays.set_data(*lines.T)
-    hits.set_data(*ends[hit].T)
+    hits.set_data(*ends[has_hit].T)
 
 
-def _sight_stage(ax: Axes, simulation: Simulation, theme: Theme) -> list[Artist]:
-    """Draw the rings and bearings of the view in base_link, x upwards; return the robot in the middle."""
+def _prepare_scan_axes(ax: Axes, simulation: Simulation, theme: Theme) -> list[Artist]:
+    """Draw the rings and bearings around the robot, with x of base_link upwards; return the artists of the robot."""
     spec, world = simulation.robots[0], simulation.world
     size = max(world.bounds[2] - world.bounds[0], world.bounds[3] - world.bounds[1])
     reach = min(spec.lidar.range_max if spec.lidar is not None else 3.0, 0.5 * size)
@@ -237,5 +237,5 @@ def _sight_stage(ax: Axes, simulation: Simulation, theme: Theme) -> list[Artist]
         ax.text(1.07 * x * reach, 1.07 * y * reach, text, fontsize=7.5, color=theme.muted, ha="center", va="center")
     upward = Pose(0.0, 0.0, math.pi / 2)
     halo, *robot = artists.draw_robot(ax, spec, upward, theme, theme.robot)
-    halo.remove()  # it would hide what is near
+    halo.remove()  # it would hide nearby obstacles
     return robot

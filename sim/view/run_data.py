@@ -1,7 +1,8 @@
-"""A recording as the text that the player reads: numbers rounded, delta-coded and compressed, 300 kB at most.
+"""Encodes a recording for the player: at most 300 kB of text, with rounded, delta-coded and compressed numbers.
 
-Tables are packed one by one: rounded to whole steps, each row less the one before, the four bytes of each number
-apart, deflated, base64. Neighbours hardly differ, so that most of these bytes are 0.
+Each table is rounded to whole steps, and each row is replaced by its difference from the previous one. Then the four
+bytes of each number are put in separate planes, deflated and encoded as base64. Neighbouring rows hardly differ, so
+most of these bytes are 0.
 """
 
 from __future__ import annotations
@@ -33,24 +34,24 @@ from sim.view.shapes import (
 from sim.world import World
 
 MAX_BYTES = 300_000
-MAX_LOG_BYTES = 60_000  # of them for what the programs wrote
+MAX_LOG_BYTES = 60_000  # the part of `MAX_BYTES` that the output of the programs may use
 LADDER = ((3000, 360), (3000, 120), (1500, 60), (750, 30), (400, 10))
-"""The most rows and the most beams of a scan; the first pair whose text is short enough is taken, or the last one."""
+"""Pairs of the maximum numbers of rows and of beams in a scan. The first that makes the text short enough is used."""
 
 CENTIMETRE, MILLI = 0.01, 0.001
 NO_RETURN, NO_READING = -1.0, 0.0
-"""What stands for a range of +inf, and for one that is invalid or too near to be measured."""
+"""The codes for a range of +inf, and for a range that is invalid or too short to be measured."""
 
 
 @dataclass(frozen=True)
 class Margin:
-    """How far a rule was from being broken, in time.
+    """How far a rule is from being broken, over time.
 
     Attributes:
-        rule: the rule in words, with the unit of its values.
-        times: seconds, rising.
-        values: one a time; 0 or less where the rule does not hold.
-        broken_at: the first time, in seconds, at which it does not hold; None if it always does.
+        rule: the text of the rule, with the unit of its values.
+        times: the times in seconds, in ascending order.
+        values: a value for each time, 0 or less if the rule is broken.
+        broken_at: the first time in seconds at which the rule is broken, or None.
     """
 
     rule: str
@@ -66,30 +67,30 @@ def encode(
 
     Args:
         recording: the run.
-        alt: the sentence that stands for the run where it cannot be seen.
-        margins: the rules that it was judged by.
-        mark: the instant, in seconds, that the player shows first; the first one at which a rule broke if None, or the
-            end of the run if none broke.
-        note: what is said of the instant.
+        alt: the alternative text.
+        margins: the rules for the run.
+        mark: the time in seconds of the instant that the player shows first. If it is None, that is the first instant
+            at which a rule was broken, or the end of the run.
+        note: the text for the instant.
 
     Raises:
         ValueError: `mark` is not finite.
     """
-    broken = [margin.broken_at for margin in margins if margin.broken_at is not None]
-    mark = min(broken, default=None) if mark is None else mark
+    broken_times = [margin.broken_at for margin in margins if margin.broken_at is not None]
+    mark = min(broken_times, default=None) if mark is None else mark
     moment = moment_of(recording, list(range(len(recording.simulation.robots))), mark, note)
     title, summary = heading(recording)
     text = ""
-    for most_rows, most_beams in LADDER:
+    for max_rows, max_beams in LADDER:
         data = {
             "alt": alt,
             "title": title,
             "summary": summary,
-            "moment": None if moment is None else _moment(moment),
-            "world": _world(recording.simulation.world),
-            "margins": [_margin(margin, most_rows) for margin in margins],
-            "said": _said(recording.said),
-            **_run(recording, most_rows, most_beams),
+            "moment": None if moment is None else _encode_moment(moment),
+            "world": _encode_world(recording.simulation.world),
+            "margins": [_encode_margin(margin, max_rows) for margin in margins],
+            "said": _encode_log(recording.log_lines),
+            **_encode_run(recording, max_rows, max_beams),
         }
         # "</" would end the script element; "\\u003c" is the same character to JSON.
         text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
@@ -102,18 +103,18 @@ def pack(values: npt.ArrayLike, step: float) -> dict[str, Any]:
     """Return a table of numbers, (rows, columns) or (rows,), in whole steps, delta-coded and compressed."""
     table = np.atleast_2d(np.asarray(values, dtype=np.float64))
     table = table.T if np.ndim(values) == 1 else table
-    whole = np.round(table / step).astype(np.int64)
-    change = np.diff(whole, axis=0, prepend=np.zeros((1, whole.shape[1]), dtype=np.int64))
-    zigzag = np.where(change < 0, -2 * change - 1, 2 * change).astype("<u4")
+    steps = np.round(table / step).astype(np.int64)
+    differences = np.diff(steps, axis=0, prepend=np.zeros((1, steps.shape[1]), dtype=np.int64))
+    zigzag = np.where(differences < 0, -2 * differences - 1, 2 * differences).astype("<u4")
     planes = zigzag.reshape(-1, 1).view(np.uint8).T.tobytes()
-    return {"columns": whole.shape[1], "step": step, "data": _deflated(planes)}
+    return {"columns": steps.shape[1], "step": step, "data": _deflate(planes)}
 
 
-def _deflated(data: bytes) -> str:
+def _deflate(data: bytes) -> str:
     return base64.b64encode(zlib.compress(data, 9)).decode("ascii")
 
 
-def _moment(moment: Moment) -> dict[str, Any]:
+def _encode_moment(moment: Moment) -> dict[str, Any]:
     near = (moment.near.x, moment.near.y)
     return {
         "time": round(moment.time, 3),
@@ -125,13 +126,13 @@ def _moment(moment: Moment) -> dict[str, Any]:
     }
 
 
-def _world(world: World) -> dict[str, Any]:
+def _encode_world(world: World) -> dict[str, Any]:
     room, solid = outlines(world)
     left, low, right, high = world.bounds
-    edge = margin_of(world)
+    margin = margin_of(world)
     return {
         "name": world.name,
-        "bounds": [round(side, 3) for side in (left - edge, low - edge, right + edge, high + edge)],
+        "bounds": [round(side, 3) for side in (left - margin, low - margin, right + margin, high + margin)],
         "inside": [round(side, 3) for side in (left, low, right, high)],
         "room": pack(room, MILLI),
         "solid": [pack(loop, MILLI) for loop in solid],
@@ -144,8 +145,8 @@ def _world(world: World) -> dict[str, Any]:
     }
 
 
-def _run(recording: Recording, most_rows: int, most_beams: int) -> dict[str, Any]:
-    rows, simulation = _thinned(len(recording), most_rows), recording.simulation
+def _encode_run(recording: Recording, max_rows: int, max_beams: int) -> dict[str, Any]:
+    rows, simulation = _selected_rows(len(recording), max_rows), recording.simulation
     paths = [np.ravel(movers_at(simulation, time)) for time in recording.times_ns[rows].tolist()]
     return {
         "times": pack(recording.times[rows], MILLI),
@@ -155,75 +156,75 @@ def _run(recording: Recording, most_rows: int, most_beams: int) -> dict[str, Any
                 "name": spec.name,
                 "body": np.round(body_outline(spec), 3).tolist(),
                 "nose": np.round(nose_outline(spec), 3).tolist(),
-                "poses": pack(_unwound(recording.poses[rows, index]), MILLI),
+                "poses": pack(_unwrap_angles(recording.poses[rows, index]), MILLI),
                 "velocities": pack(recording.velocities[rows, index], MILLI),
-                "commands": _commands(recording, index, rows),
+                "commands": _encode_commands(recording, index, rows),
                 "gaps": pack(np.nan_to_num(recording.clearances[rows, index], posinf=1e3, neginf=0.0), MILLI),
-                "scans": _scans(recording, index, most_rows, most_beams),
+                "scans": _encode_scans(recording, index, max_rows, max_beams),
             }
             for index, spec in enumerate(simulation.robots)
         ],
         "collisions": [
             [round(event.time_ns / 1e9, 3), round(event.x, 3), round(event.y, 3), event.what, event.robot]
-            for event in recording.events[:most_rows]
+            for event in recording.events[:max_rows]
             if event.kind == "collision"
         ],
     }
 
 
-def _thinned(count: int, most: int) -> npt.NDArray[np.int64]:
-    """Return the numbers of `count` rows, or of `most` among them: the eye sees no difference."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
+def _selected_rows(count: int, limit: int) -> npt.NDArray[np.int64]:
+    """Return the indices of all `count` rows or, if there are more than `limit`, of `limit` evenly spaced ones."""
+    return np.unique(np.linspace(0, count - 1, min(count, limit)).round().astype(np.int64))
 
 
-def _unwound(poses: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return poses whose angle does not leap, so that the player may draw what lies between two of them."""
+def _unwrap_angles(poses: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return poses whose angles have no jumps, so that the player can interpolate between them."""
     return np.column_stack([poses[:, :2], np.unwrap(poses[:, 2])])
 
 
-def _commands(recording: Recording, index: int, rows: npt.NDArray[np.int64]) -> dict[str, Any] | None:
-    """Return the newest command at each row, from the first one on; None without any."""
-    given = ~np.isnan(recording.commands[:, index, 0])
-    if not given.any():
+def _encode_commands(recording: Recording, index: int, rows: npt.NDArray[np.int64]) -> dict[str, Any] | None:
+    """Return the latest command at each row, from the first command on, or None if there is none."""
+    has_command = ~np.isnan(recording.commands[:, index, 0])
+    if not has_command.any():
         return None
-    newest = np.maximum.accumulate(np.where(given, np.arange(len(recording)), 0))
-    held = np.nan_to_num(recording.commands[newest, index], posinf=0.0, neginf=0.0)
-    first = float(recording.times[int(np.argmax(given))])
-    return {"first": round(first, 3), **pack(held[rows], MILLI)}
+    newest_rows = np.maximum.accumulate(np.where(has_command, np.arange(len(recording)), 0))
+    latest_commands = np.nan_to_num(recording.commands[newest_rows, index], posinf=0.0, neginf=0.0)
+    first = float(recording.times[int(np.argmax(has_command))])
+    return {"first": round(first, 3), **pack(latest_commands[rows], MILLI)}
 
 
-def _scans(recording: Recording, index: int, most_rows: int, most_beams: int) -> dict[str, Any] | None:
+def _encode_scans(recording: Recording, index: int, max_rows: int, max_beams: int) -> dict[str, Any] | None:
     lidar, log = recording.simulation.robots[index].lidar, recording.scans[index]
     if lidar is None or not len(log.rows):
         return None
-    numbers, keep = _thinned(len(log.rows), most_rows), max(1, math.ceil(lidar.beams / most_beams))
-    ranges = log.ranges[numbers, ::keep].astype(np.float64)
-    shown = np.where(ranges == math.inf, NO_RETURN, np.where(np.isfinite(ranges), ranges, NO_READING))
+    numbers, beam_step = _selected_rows(len(log.rows), max_rows), max(1, math.ceil(lidar.beams / max_beams))
+    ranges = log.ranges[numbers, ::beam_step].astype(np.float64)
+    codes = np.where(ranges == math.inf, NO_RETURN, np.where(np.isfinite(ranges), ranges, NO_READING))
     return {
         "times": pack(recording.times[log.rows[numbers]], MILLI),
         "poses": pack(recording.poses[log.rows[numbers], index], MILLI),
         "mount": [round(number, 4) for number in (lidar.mount.x, lidar.mount.y, lidar.mount.theta)],
         "first": lidar.angle_min,
-        "turn": lidar.angle_increment * keep,
+        "turn": lidar.angle_increment * beam_step,
         "reach": lidar.range_max,
         "full": is_full_turn(lidar),
-        "ranges": pack(shown, CENTIMETRE),
+        "ranges": pack(codes, CENTIMETRE),
     }
 
 
-def _said(lines: tuple[Line, ...]) -> dict[str, Any] | None:
-    """Return what the programs wrote, or as much as there is room for; None if they wrote nothing."""
-    most = len(lines)
-    while shown := shorten(lines, most):
-        data = _deflated(json.dumps([text for _, text in shown]).encode())
+def _encode_log(lines: tuple[Line, ...]) -> dict[str, Any] | None:
+    """Return the output of the programs, shortened to `MAX_LOG_BYTES`; None if there is none."""
+    limit = len(lines)
+    while selected_lines := shorten(lines, limit):
+        data = _deflate(json.dumps([text for _, text in selected_lines]).encode())
         if len(data) <= MAX_LOG_BYTES:
-            return {"times": pack([seconds for seconds, _ in shown], MILLI), "texts": data}
-        most //= 2
+            return {"times": pack([seconds for seconds, _ in selected_lines], MILLI), "texts": data}
+        limit //= 2
     return None
 
 
-def _margin(margin: Margin, most_rows: int) -> dict[str, Any]:
-    rows = _thinned(len(margin.times), most_rows)
+def _encode_margin(margin: Margin, max_rows: int) -> dict[str, Any]:
+    rows = _selected_rows(len(margin.times), max_rows)
     values = np.nan_to_num(np.asarray(margin.values, dtype=np.float64)[rows], posinf=1e3, neginf=-1e3)
     return {
         "rule": margin.rule,

@@ -1,6 +1,6 @@
-"""What a live view plays: a run that grows as it is watched, whose past can be visited.
+"""The run of a live view: it is simulated while it is shown, and its past can be shown again.
 
-No widget and no clock: `advance` is told how much simulated time to add, so a test plays a minute in a moment.
+It uses no widget and no clock: the caller of `advance` determines the simulated time, so tests are fast.
 """
 
 from __future__ import annotations
@@ -20,70 +20,70 @@ from sim.recording import Recorder, Recording
 from sim.simulation import Simulation, State, observe, start, step
 
 Controller = Callable[[Scan], Command | None]
-"""A student's callback: it gets each new scan and returns the next command; None keeps the last one."""
+"""A student's callback, which is called with each new scan and returns the next command, or None to keep the last."""
 
 
-LONGEST_NS = 1_800_000_000_000
-"""A live run ends after half an hour of simulated time."""
+MAX_NS = 1_800_000_000_000
+"""The maximum duration of a live run: half an hour of simulated time."""
 
 TRAIL = 1500
-"""At most about so many points of a track are drawn in a frame."""
+"""The approximate maximum number of points of a track in a frame."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """One instant to be shown: a state, and the newest scan of each robot with the pose it was taken from."""
+    """One instant: a state, and the newest scan of each robot with the robot's pose at that scan."""
 
     state: State
     scans: tuple[tuple[Scan, Pose] | None, ...]
 
 
 class Source(Protocol):
-    """What a live view can play. Times are in nanoseconds of simulated time."""
+    """The interface of the runs that a live view can show. Times are in nanoseconds of simulated time."""
 
     paced: bool
-    """Whether the view's speed is the run's speed."""
+    """Whether the view determines the speed of the run."""
 
     @property
     def simulation(self) -> Simulation:
-        """What the run is made of."""
+        """The parameters of the run."""
 
     @property
     def end_ns(self) -> int:
-        """How far the run has got."""
+        """The time of the last state."""
 
     @property
     def growing(self) -> bool:
-        """Whether there is more to come."""
+        """Whether the run can continue."""
 
     @property
     def can_be_released(self) -> bool:
-        """Whether somebody else drives when the pad does not."""
+        """Whether a callback or a node drives when the pad does not."""
 
     def at(self, time_ns: int) -> Frame:
-        """Return the last frame that is not later than `time_ns` (the first one, if all are)."""
+        """Return the last frame that is not later than `time_ns` (the first one if all are later)."""
 
     def trail(self, time_ns: int) -> NDArray[np.float64]:
         """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
 
     def advance(self, until_ns: int) -> int:
-        """Run up to `until_ns` and return the instant to be shown."""
+        """Run until `until_ns`; return the instant to show."""
 
-    def hold(self, paused: bool) -> None:
-        """Be told that the view has been paused, or plays again."""
+    def set_paused(self, paused: bool) -> None:
+        """React when the view is paused or continued."""
 
     def reset(self) -> None:
-        """Go back to the start and forget the past."""
+        """Return to the start, and drop the recorded states."""
 
     def drive(self, command: Command | None) -> None:
-        """Drive the first robot by hand; None gives it back to whoever drove it before."""
+        """Drive the first robot manually. None returns control to the callback or node."""
 
     def recording(self) -> Recording:
-        """Return the run so far as a recording, to be plotted, saved or replayed."""
+        """Return the recording of the run, which can be plotted, saved or replayed."""
 
 
 class Session:
-    """A run in progress. `frames` is its past, one a physics tick, never empty."""
+    """A run in progress. `frames` contains a frame for the start and for each physics tick."""
 
     paced = True
 
@@ -93,7 +93,7 @@ class Session:
         self.reset()
 
     def reset(self) -> None:
-        """Go back to the start and forget the past."""
+        """Return to the start, and drop the recorded states."""
         state = start(self.simulation)
         self._recorder = Recorder(self.simulation, state)
         self._times: list[int] = []
@@ -105,13 +105,13 @@ class Session:
 
     @property
     def end_ns(self) -> int:
-        """How far the run has got, in nanoseconds of simulated time."""
+        """The time of the last state, in nanoseconds of simulated time."""
         return self._times[-1]
 
     @property
     def growing(self) -> bool:
-        """Whether `advance` can add to the run; a forgotten view must not fill the memory."""
-        return self.end_ns < LONGEST_NS
+        """Whether the run can continue. Its length is limited, so that a forgotten view does not fill the memory."""
+        return self.end_ns < MAX_NS
 
     @property
     def can_be_released(self) -> bool:
@@ -119,7 +119,7 @@ class Session:
         return self.controller is not None
 
     def at(self, time_ns: int) -> Frame:
-        """Return the last frame that is not later than `time_ns` (the first one, if all are)."""
+        """Return the last frame that is not later than `time_ns` (the first one if all are later)."""
         return self.frames[max(0, bisect.bisect_right(self._times, time_ns) - 1)]
 
     def trail(self, time_ns: int) -> NDArray[np.float64]:
@@ -128,47 +128,44 @@ class Session:
         return np.array(self._track[: count : 1 + count // TRAIL], dtype=np.float64).reshape(-1, 2)
 
     def drive(self, command: Command | None) -> None:
-        """Take the first robot over by hand, from the next tick on; None gives it back to the controller."""
+        """Drive the first robot manually from the next tick on. None returns control to the controller."""
         self.automatic = command is None
         self.command = self.command if command is None else command
 
-    def hold(self, paused: bool) -> None:
-        """Do nothing: this run goes on only when it is told to."""
+    def set_paused(self, paused: bool) -> None:
+        """Do nothing, because this run advances only in `advance`."""
 
     def advance(self, until_ns: int) -> int:
-        """Step the run until it has reached `until_ns`; what the controller raises is raised here.
-
-        Returns the instant to be shown.
-        """
+        """Step the run until `until_ns`; return the instant to show. Exceptions of the controller are passed on."""
         tick_ns = self.simulation.tick_ns
         while self.growing and self._times[-1] + tick_ns <= until_ns:
             frame = self.frames[-1]
             if self.automatic and self.controller is not None and _is_new(frame):
                 newest = frame.scans[0]
-                wanted = self.controller(newest[0]) if newest is not None else None
-                if wanted is not None and not isinstance(wanted, Command):
-                    raise TypeError(f"the callback must return a Command or None, not {type(wanted).__name__}")
-                self.command = self.command if wanted is None else wanted
+                next_command = self.controller(newest[0]) if newest is not None else None
+                if next_command is not None and not isinstance(next_command, Command):
+                    raise TypeError(f"the callback must return a Command or None, not {type(next_command).__name__}")
+                self.command = self.command if next_command is None else next_command
             state = step(self.simulation, frame.state, {self.simulation.robots[0].name: self.command})
             self._append(state, frame.scans)
         return until_ns
 
     def recording(self) -> Recording:
-        """Return the run so far as a recording, to be plotted, saved or replayed."""
+        """Return the recording of the run, which can be plotted, saved or replayed."""
         return self._recorder.recording()
 
     def _append(self, state: State, scans: tuple[tuple[Scan, Pose] | None, ...]) -> None:
-        first = not self._times
-        if not first:
+        is_first = not self._times
+        if not is_first:
             self._recorder.append(state, {self.simulation.robots[0].name: self.command})
-        fresh = list(scans)
+        newest_scans = list(scans)
         for index, spec in enumerate(self.simulation.robots):
-            if spec.lidar is not None and (first or due(self._times[-1], state.time_ns, spec.lidar.rate)):
+            if spec.lidar is not None and (is_first or due(self._times[-1], state.time_ns, spec.lidar.rate)):
                 scan = observe(self.simulation, state, spec.name)
                 self._recorder.scan(scan, spec.name)
                 if scan is not None:
-                    fresh[index] = (scan, state.robots[index].pose)
-        self.frames.append(Frame(state, tuple(fresh)))
+                    newest_scans[index] = (scan, state.robots[index].pose)
+        self.frames.append(Frame(state, tuple(newest_scans)))
         self._times.append(state.time_ns)
         self._track.append((state.robots[0].pose.x, state.robots[0].pose.y))
 

@@ -1,4 +1,4 @@
-"""The shapes of what is drawn, as numbers: outlines of rooms, robots and scans, and a run's closest place.
+"""Computes the shapes in pictures: outlines of rooms, robots and scans, and the nearest approach of a run.
 
 Lengths are metres. Coordinates are in the frame `map` unless a function says otherwise.
 """
@@ -25,19 +25,19 @@ from sim.world import World
 Floats = npt.NDArray[np.float64]
 
 MARGIN = 0.035
-"""Paper around the world's bounds, as a share of its larger side: room for the names of the outer walls."""
+"""The margin around the world, in which the names of outer walls are written, as a share of its larger side."""
 
 
 @dataclass(frozen=True)
 class Moment:
-    """A moment of a run that its drawing points at.
+    """A moment of a run that a picture marks.
 
     Attributes:
-        time: in seconds.
-        x, y: where the robot's centre is then.
-        near: what is nearest to the robot then.
-        words: what is written beside it.
-        marked: whether somebody chose the moment; if not, it is the one at which the robot was closest to something.
+        time: the time in seconds.
+        x, y: the position of the robot's centre.
+        near: the obstacle nearest to the robot.
+        words: the text beside the mark.
+        marked: whether the user has chosen the moment. Otherwise, it is the one with the smallest clearance.
     """
 
     time: float
@@ -49,24 +49,24 @@ class Moment:
 
     @property
     def spot(self) -> tuple[float, float]:
-        """The place for the words: the chosen one's robot, or the middle of the gap to what is nearest."""
-        gap, whole = max(0.0, self.near.distance), math.hypot(self.x - self.near.x, self.y - self.near.y)
-        if self.marked or whole == 0.0:
+        """The place for the text: the robot at a chosen moment, otherwise the middle of the gap to the obstacle."""
+        gap, centre_distance = max(0.0, self.near.distance), math.hypot(self.x - self.near.x, self.y - self.near.y)
+        if self.marked or centre_distance == 0.0:
             return self.x, self.y
-        share = min(1.0, gap / whole) / 2
+        share = min(1.0, gap / centre_distance) / 2
         return self.near.x + share * (self.x - self.near.x), self.near.y + share * (self.y - self.near.y)
 
 
 def moment_of(recording: Recording, indices: list[int], mark: float | None, note: str) -> Moment | None:
-    """Return the moment to point at: the chosen one, or where the robot was closest to something.
+    """Return the moment to mark: the chosen one, or the one with the smallest clearance.
 
-    Of several robots, or after a collision, which has a symbol of its own, only a chosen moment is pointed at.
+    With several robots, or after a collision, which has its own symbol, only a chosen moment is marked.
 
     Args:
         recording: the run.
-        indices: of the robots that are drawn; the first one's moment is meant.
+        indices: the indices of the robots that are drawn. The moment belongs to the run of the first one.
         mark: the time of the chosen moment, in seconds.
-        note: what is said of the chosen moment.
+        note: the text for the chosen moment.
 
     Raises:
         ValueError: `mark` is not finite.
@@ -78,8 +78,8 @@ def moment_of(recording: Recording, indices: list[int], mark: float | None, note
         words = f"t = {recording.times[row]:.1f} s" + (f"\n{note}" if note else "")
     else:
         distances = recording.clearances[:, index]
-        collided = any(event.kind == "collision" and event.robot == spec.name for event in recording.events)
-        if len(indices) > 1 or collided or not np.isfinite(distances).any():
+        has_collided = any(event.kind == "collision" and event.robot == spec.name for event in recording.events)
+        if len(indices) > 1 or has_collided or not np.isfinite(distances).any():
             return None
         row = int(np.nanargmin(distances))
         words = f"{max(0.0, float(distances[row])):.2f} m"
@@ -89,30 +89,30 @@ def moment_of(recording: Recording, indices: list[int], mark: float | None, note
 
 
 def margin_of(world: World) -> float:
-    """Return the paper around the world's bounds, in metres."""
+    """Return the margin around the world's bounds, in metres."""
     left, low, right, high = world.bounds
     return max(0.05, MARGIN * max(right - left, high - low))
 
 
 def outlines(world: World) -> tuple[Floats, list[Floats]]:
-    """Return the outline of the room the robot starts in, and those of solid things, each (K, 2).
+    """Return the outline of the room in which the robot starts, and those of solid objects, each (K, 2).
 
-    An outline is a run of segments each of which starts where the last one ended, and which closes. The room is the
-    smallest around the start pose (the world's bounds, if none is). It is no solid thing, unless an odd number of
-    others are around it: then it is the inner face of a thick wall.
+    An outline is a closed sequence of segments, each of which starts at the end of the previous one. The room is the
+    smallest one around the start pose, or the world's bounds if none surrounds it. It is not a solid object, unless an
+    odd number of others surround it: then it is the inner face of a thick wall.
     """
     loops = _closed_loops(world.segments)
-    here = (world.starts[0].x, world.starts[0].y)
-    around = sorted(
-        (index for index, loop in enumerate(loops) if Path(loop).contains_point(here)),
+    start = (world.starts[0].x, world.starts[0].y)
+    surrounding_indices = sorted(
+        (index for index, loop in enumerate(loops) if Path(loop).contains_point(start)),
         key=lambda index: float(np.ptp(loops[index], axis=0).prod()),
     )
-    if not around:
+    if not surrounding_indices:
         left, low, right, high = world.bounds
         return np.array([[left, low], [right, low], [right, high], [left, high]]), loops
-    room = loops[around[0]]
-    if len(around) % 2:
-        del loops[around[0]]
+    room = loops[surrounding_indices[0]]
+    if len(surrounding_indices) % 2:
+        del loops[surrounding_indices[0]]
     return room, loops
 
 
@@ -137,37 +137,37 @@ def body_outline(spec: RobotSpec, points: int = 40) -> Floats:
 
 
 def nose_outline(spec: RobotSpec) -> Floats:
-    """Return the arrowhead on the robot's back that shows where it looks, as (4, 2) points in base_link."""
+    """Return the arrowhead on the robot that shows its heading, as (4, 2) points in base_link."""
     reach = float(np.hypot(*body_outline(spec).T).max())
     return reach * np.array([[0.78, 0.0], [-0.45, 0.48], [-0.2, 0.0], [-0.45, -0.48]])
 
 
 def place(outline: Floats, pose: Pose) -> Floats:
-    """Return `outline`, (N, 2) in base_link, in the frame `map`."""
+    """Convert `outline`, (N, 2), from base_link to the frame `map`."""
     cosine, sine = math.cos(pose.theta), math.sin(pose.theta)
     x, y = outline.T
     return np.column_stack([pose.x + cosine * x - sine * y, pose.y + sine * x + cosine * y])
 
 
 def beam_ends(ranges: npt.NDArray[Any], lidar: LidarSpec, pose: Pose) -> tuple[Floats, Floats, npt.NDArray[np.bool_]]:
-    """Return the sensor's place (2,), each beam's end (N, 2) in metres, and which beams hit something (N,).
+    """Return the sensor's position (2,), each beam's end (N, 2) in metres, and whether the beam hit something (N,).
 
-    A beam without a return ends at `range_max`; one that is invalid or too close ends at the sensor.
+    A beam without a return ends at `range_max`. One whose range is invalid or too short ends at the sensor.
     """
     mount = place(np.array([[lidar.mount.x, lidar.mount.y]]), pose)[0]
     angles = pose.theta + lidar.mount.theta + lidar.angle_min + np.arange(lidar.beams) * lidar.angle_increment
     ranges = np.asarray(ranges, dtype=np.float64)
-    hit = np.isfinite(ranges)
-    length = np.where(hit, ranges, np.where(ranges == math.inf, lidar.range_max, 0.0))
+    has_hit = np.isfinite(ranges)
+    length = np.where(has_hit, ranges, np.where(ranges == math.inf, lidar.range_max, 0.0))
     ends = mount + length[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
-    return mount, ends, hit
+    return mount, ends, has_hit
 
 
 def is_full_turn(lidar: LidarSpec) -> bool:
-    """Say whether the beams go all the way round."""
+    """Return whether the beams cover a full turn."""
     return math.isclose(lidar.beams * lidar.angle_increment, math.tau, rel_tol=0.02)
 
 
 def movers_at(simulation: Simulation, time_ns: int) -> list[tuple[float, float]]:
-    """Return where the centre of each moving obstacle is at `time_ns`, in metres."""
+    """Return the centre of each moving obstacle at `time_ns`, in metres."""
     return [(x, y) for x, y, _ in simulation.scene.movers_at(time_ns)]

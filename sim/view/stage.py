@@ -1,4 +1,4 @@
-"""The sheet that a picture is drawn on: its size, its title, its names and its legend."""
+"""Prepares the Axes of a picture: its size, title, names and legend."""
 
 from __future__ import annotations
 
@@ -16,15 +16,17 @@ from sim.world import World
 
 WIDTH = 7.6
 HEIGHT = 5.4
-_LEFT, _RIGHT, _BOTTOM, _TOP = 0.42, 0.16, 0.34, 0.60
-"""Inches of paper around the axes."""
+"""The maximum size of a picture in inches."""
 
-ROOMY = 0.5
-"""Metres of radius from which a pillar has its name inside."""
+_LEFT, _RIGHT, _BOTTOM, _TOP = 0.42, 0.16, 0.34, 0.60
+"""The margins around the axes in inches."""
+
+MIN_RADIUS_FOR_NAME = 0.5
+"""The minimum radius of a pillar whose name is written inside it, in metres."""
 
 
 def new_axes(world: World, theme: Theme) -> Axes:
-    """Return the Axes of a new Figure that has the world's proportions, within `WIDTH` x `HEIGHT` inches."""
+    """Return the Axes of a new Figure of at most `WIDTH` x `HEIGHT` inches, in the proportions of the world."""
     left, low, right, high = world.bounds
     margin = 2 * margin_of(world)
     across, up = max(right - left, 0.1) + margin, max(high - low, 0.1) + margin
@@ -44,8 +46,8 @@ def prepare(ax: Axes, world: World, theme: Theme, title: str, subtitle: str) -> 
     ax.annotate(subtitle, (0, 1), (0, 7), fontsize=9, color=theme.muted, va="baseline", **place)
 
 
-def add_scale(ax: Axes, colours: Any, limits: tuple[float, float], unit: str, what: str, theme: Theme) -> None:
-    """Draw a slim colour scale at the top right of `ax`, its two ends labelled."""
+def add_scale(ax: Axes, colours: Any, limits: tuple[float, float], unit: str, label: str, theme: Theme) -> None:
+    """Draw a narrow colour scale at the top right of `ax`, with labels at both ends."""
     height = ax.get_window_extent().height / ax.figure.dpi * 72
     width = ax.get_window_extent().width / ax.figure.dpi * 72
     bar = ax.inset_axes((1 - 110 / width, 1 + 9 / height, 110 / width, 4 / height))
@@ -59,23 +61,23 @@ def add_scale(ax: Axes, colours: Any, limits: tuple[float, float], unit: str, wh
     }
     for x, text, side in ((0, f"{limits[0]:.3g}", "left"), (1, f"{limits[1]:.3g} {unit}", "right")):
         bar.annotate(text, (x, 1), (0, 3), ha=side, va="bottom", color=theme.muted, **place)
-    bar.annotate(what, (0.5, 1), (0, 3), ha="center", va="bottom", color=theme.muted, **place)
+    bar.annotate(label, (0.5, 1), (0, 3), ha="center", va="bottom", color=theme.muted, **place)
 
 
 def write_names(ax: Axes, world: World, theme: Theme) -> None:
-    """Write the names of walls along them, of furniture into it, of pillars and goals beside them."""
+    """Write names: along walls, inside furniture and large pillars, and beside other pillars and goals."""
     style: dict[str, Any] = {"fontsize": 7.5, "color": theme.muted, "zorder": 7, "annotation_clip": False}
     for name in dict.fromkeys(filter(None, world.segment_names)):
         rows = world.segments[[index for index, other in enumerate(world.segment_names) if other == name]]
-        if _closed(rows):
+        if _is_closed(rows):
             centre = rows.reshape(-1, 2).mean(axis=0)
-            upright = np.ptp(rows[:, 0::2]) < np.ptp(rows[:, 1::2])
-            ax.annotate(name, tuple(centre), ha="center", va="center", rotation=90 if upright else 0, **style)
+            is_vertical = np.ptp(rows[:, 0::2]) < np.ptp(rows[:, 1::2])
+            ax.annotate(name, tuple(centre), ha="center", va="center", rotation=90 if is_vertical else 0, **style)
             continue
         wall = rows[int(np.argmax(np.hypot(rows[:, 2] - rows[:, 0], rows[:, 3] - rows[:, 1])))]
         _name_wall(ax, name, wall, world, style)
     for (x, y, radius), name in zip(world.circles.tolist(), world.circle_names, strict=True):
-        if radius >= ROOMY:
+        if radius >= MIN_RADIUS_FOR_NAME:
             ax.annotate(name, (x, y), ha="center", va="center", **style)
         elif name:
             ax.annotate(name, (x, y + radius), (0, 4), textcoords="offset points", ha="center", va="bottom", **style)
@@ -98,12 +100,12 @@ def _name_wall(ax: Axes, name: str, wall: npt.NDArray[Any], world: World, style:
     left, low, right, high = world.bounds
     middle = np.array([(left + right) / 2, (low + high) / 2])
     inward = normal if normal @ (middle - centre) >= 0 else -normal
-    outer = centre[0] in (left, right) or centre[1] in (low, high)
+    is_outer = centre[0] in (left, right) or centre[1] in (low, high)
     angle = float(np.degrees(np.arctan2(along[1], along[0])))
     ax.annotate(
         name,
         tuple(centre),
-        tuple(-8.0 * inward if outer else 7.5 * inward),
+        tuple(-8.0 * inward if is_outer else 7.5 * inward),
         textcoords="offset points",
         ha="center",
         va="center",
@@ -113,6 +115,6 @@ def _name_wall(ax: Axes, name: str, wall: npt.NDArray[Any], world: World, style:
     )
 
 
-def _closed(rows: npt.NDArray[Any]) -> bool:
-    """Say whether the segments, in their order, go round a piece of furniture."""
+def _is_closed(rows: npt.NDArray[Any]) -> bool:
+    """Return whether the segments, in their order, form a closed outline, such as that of a piece of furniture."""
     return len(rows) > 2 and bool(np.allclose(rows[:, 2:], np.roll(rows[:, :2], -1, axis=0)))

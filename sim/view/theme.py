@@ -1,7 +1,8 @@
-"""Colours and type for every picture: one frozen `Theme` light, one dark.
+"""The colours and fonts of all pictures: a light and a dark `Theme`.
 
-The hues are those of Okabe and Ito (2008), told apart by all common kinds of colour blindness; no meaning rests on
-colour alone (a goal is a ring, a collision a cross, the robot has a nose). Lines and letters are sized for a projector.
+The hues are those of Okabe and Ito (2008), which people with any common kind of colour blindness can tell apart. No
+meaning depends only on colour: a goal is a ring, a collision a cross, and the robot has a nose. Lines and letters are
+large enough for a projector.
 """
 
 from __future__ import annotations
@@ -38,18 +39,18 @@ class Theme:
     near_far: tuple[str, str, str]
 
     def time_colours(self, index: int) -> LinearSegmentedColormap:
-        """Return early to late in the hue of the robot with that place: its lightness carries the meaning."""
+        """Return the colours of a robot's track from early to late. They share a hue, and lightness represents time."""
         return LinearSegmentedColormap.from_list(f"{self.name}-time-{index}", list(self.time_hues(index)))
 
     def time_hues(self, index: int) -> tuple[str, str, str]:
-        """Return the colours of a robot's track at its start, in the middle and at its end."""
+        """Return the colours of a robot's track at its start, middle and end."""
         own = self.robot_colour(index)
-        early, late = (_mixed(own, end, 0.6) for end in (self.paper, self.ink))
+        early, late = (_mix(own, end, 0.6) for end in (self.paper, self.ink))
         return early, own, late
 
     @cached_property
     def named(self) -> dict[str, str]:
-        """The colours that have a name: this theme's fields, and `early`, `own` and `late` of each kind of robot."""
+        """The colours by their names: this theme's fields, and `early`, `own` and `late` for each robot colour."""
         colours = {field.name: getattr(self, field.name) for field in fields(self) if field.type == "str"}
         del colours["name"]
         for index in range(1 + len(self.others)):
@@ -58,21 +59,21 @@ class Theme:
 
     @cached_property
     def clearance_colours(self) -> LinearSegmentedColormap:
-        """Near to far: vermilion to blue."""
+        """The colours from near to far, vermilion to blue."""
         return LinearSegmentedColormap.from_list(f"{self.name}-clearance", list(self.near_far))
 
     @cached_property
     def others(self) -> tuple[str, ...]:
-        """Colours of the second and further robots."""
+        """The colours of the second and further robots."""
         return ("#CC79A7", "#009E73", "#E69F00", "#56B4E9")
 
     def robot_colour(self, index: int) -> str:
-        """Return the colour of the robot with that place in the simulation."""
+        """Return the colour of the robot with this index in the simulation."""
         return self.robot if index == 0 else self.others[(index - 1) % len(self.others)]
 
 
-def _mixed(colour: str, other: str, share: float) -> str:
-    """Return `colour` with a share of another one, as a hexadecimal string."""
+def _mix(colour: str, other: str, share: float) -> str:
+    """Mix `colour` with a `share` of the colour `other`; return a hexadecimal string."""
     red, green, blue = (1 - share) * np.array(to_rgb(colour)) + share * np.array(to_rgb(other))
     return to_hex((red, green, blue))
 
@@ -120,7 +121,7 @@ DARK = Theme(
 THEMES: Mapping[str, Theme] = {"light": LIGHT, "dark": DARK}
 
 STYLE: Mapping[str, Any] = {
-    "font.family": "DejaVu Sans",  # comes with matplotlib: the same letters on every machine
+    "font.family": "DejaVu Sans",  # comes with matplotlib, so letters are the same on every machine
     "font.size": 10.0,
     "svg.hashsalt": "sim",
     "svg.fonttype": "path",
@@ -130,7 +131,7 @@ STYLE: Mapping[str, Any] = {
 
 
 def theme_named(name: str | Theme) -> Theme:
-    """Return the theme called `name`, "light" or "dark"; a Theme comes back as it is."""
+    """Return the theme with the name "light" or "dark". A Theme is returned unchanged."""
     if isinstance(name, Theme):
         return name
     if name not in THEMES:

@@ -12,8 +12,8 @@ from autograder.grade import DEFAULT_SEED
 from autograder.grade.batch import grade_all
 from autograder.suite import suites
 
-CLASSES = {"02_nodes": 6, "08_capstone": 4}  # an even number each, for two workers
-COMPARED = "02_nodes"
+CLASSES = {"02_nodes": 6, "08_capstone": 4}  # students in each class: even numbers, for two workers
+SPEED_UP_CLASS = "02_nodes"
 
 
 def figures() -> dict[str, float]:
@@ -26,7 +26,7 @@ def figures() -> dict[str, float]:
             _seconds({"0": answers["0"]}, assignment, folder, 1)
             elapsed = _seconds(answers, assignment, folder, 2)
             results[f"class.submissions_per_minute_{assignment[:2]}"] = round(60 * students / elapsed, 1)
-            if assignment == COMPARED:
+            if assignment == SPEED_UP_CLASS:
                 results["class.two_workers_ratio"] = round(_seconds(answers, assignment, folder, 1) / elapsed, 2)
     return results
 

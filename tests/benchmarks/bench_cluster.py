@@ -17,7 +17,7 @@ from autograder.grade.cluster.connection import LOCAL, connected
 from autograder.grade.cluster.dispatch import grade_on
 from autograder.grade.cluster.task import Reply, Task
 from autograder.grade.job import Job
-from autograder.grade.pipeline import refused
+from autograder.grade.pipeline import unclear_result
 from autograder.result.model import Result
 from autograder.run.sandbox import Isolation
 from autograder.submission.intake import detect_layout
@@ -30,15 +30,16 @@ SOURCE = "x = 1\n" * 4000  # 24 kB, the size of an answer to 02
 def figures() -> dict[str, float]:
     """Return the overhead per submission in milliseconds, measured with gradings that take no time."""
     with connected(LOCAL, THREADS, Path()) as client:
-        elapsed, _ = seconds(client, SUBMISSIONS, [0.0])
+        elapsed, _ = time_class(client, SUBMISSIONS, [0.0])
     return {"cluster.overhead_ms": round(1000 * elapsed / SUBMISSIONS, 2)}
 
 
-def seconds(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[float, float]:
+def time_class(client: Client, submissions: int, pauses: Sequence[float]) -> tuple[float, float]:
     """Return the seconds that a class takes on a cluster, and the sum of the submissions' pauses."""
     with tempfile.TemporaryDirectory() as name:
         jobs = [_job(Path(name), number) for number in range(submissions)]
-        grade_on(client, jobs[:1], lambda _: None, report=print, grade=partial(_reply, [0.0]))  # imports modules
+        # The first grading imports modules, so it is not measured.
+        grade_on(client, jobs[:1], lambda _: None, report=print, grade=partial(_reply, [0.0]))
         start = time.monotonic()
         results: list[Result] = []
         grade_on(client, jobs, results.append, report=print, grade=partial(_reply, pauses))
@@ -60,6 +61,6 @@ def _reply(pauses: Sequence[float], data: bytes) -> bytes:
     sha256 = detect_layout(list(task.files), ASSIGNMENT).sha256
     pause = pauses[int(sha256, 16) % len(pauses)]
     time.sleep(pause)
-    result = refused(task.job, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000))
-    graded = replace(result, submission_sha256=sha256, seconds=pause).to_json()
-    return Reply({"result.json": json.dumps(graded).encode()}).pack()
+    result = unclear_result(task.job, Diagnosis(Kind.BUILD_FAILED, "no", "x" * 4000))
+    reply_json = replace(result, submission_sha256=sha256, seconds=pause).to_json()
+    return Reply({"result.json": json.dumps(reply_json).encode()}).pack()

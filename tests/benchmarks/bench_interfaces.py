@@ -22,14 +22,14 @@ RUNS = 3
 
 
 def figures() -> dict[str, float]:
-    """Return seconds and core-seconds: the medians of several runs, or of one run of colcon.
+    """Return seconds and core-seconds: the medians of several runs or, for colcon, the costs of one run.
 
     `interface.cold_*` makes the classes and their type supports, `interface.cached_s` finds them in the cache, and
     `interface.colcon_*` is `colcon build`.
     """
     activate()
-    cold: list[tuple[float, float]] = []
-    cached: list[tuple[float, float]] = []
+    cold_costs: list[tuple[float, float]] = []
+    cached_costs: list[tuple[float, float]] = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_reference((PACKAGE,), folder)
@@ -38,13 +38,13 @@ def figures() -> dict[str, float]:
         texts = tuple((f"{path.parent.name}/{path.name}", path.read_text()) for path in paths)
         for _ in range(RUNS):
             classes.cache_clear()
-            for costs in (cold, cached):
+            for costs in (cold_costs, cached_costs):
                 costs.append(_cost(lambda: _make(texts)))
         colcon = _cost(lambda: _colcon(folder))
     return {
-        "interface.cold_s": round(statistics.median(seconds for seconds, _ in cold), 3),
-        "interface.cold_core_s": round(statistics.median(core_seconds for _, core_seconds in cold), 3),
-        "interface.cached_s": round(statistics.median(seconds for seconds, _ in cached), 4),
+        "interface.cold_s": round(statistics.median(seconds for seconds, _ in cold_costs), 3),
+        "interface.cold_core_s": round(statistics.median(core_seconds for _, core_seconds in cold_costs), 3),
+        "interface.cached_s": round(statistics.median(seconds for seconds, _ in cached_costs), 7),
         "interface.colcon_s": round(colcon[0], 3),
         "interface.colcon_core_s": round(colcon[1], 3),
     }

@@ -1,34 +1,24 @@
-"""Measure the steps per second in lockstep, with one node and with three that exchange messages.
+"""Measure the steps per second in lockstep, and how often programs run in a grading of the capstone's reference.
 
-The single node is the reference controller at 10 Hz, which gets a scan of 360 beams in each step. The three nodes pass
-each step's message on to the next node, and at last to the grader. The nodes run in sandboxes, and the grader in a
-worker sandbox, as in a grading.
+The steps are those of one node, and of three that exchange messages. The single node is the reference controller at
+10 Hz, which gets a scan of 360 beams in each step. The three nodes pass each step's message on to the next node, and
+finally to the grader. The nodes run in sandboxes, and the grader in a worker sandbox, as in a grading.
 """
 
 from __future__ import annotations
 
-import json
 import statistics
-import sys
 import time
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
-from autograder.course_paths import ROOT
-from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
+from tests.e2e.sandbox_support import in_worker_sandbox
 
 STEPS = 2000
 CHAIN_STEPS = 500
 RUNS = 5
-# A worker sandbox's process starts in /, where Python would not find this module.
-RUN = f"""
-import json, sys
-from pathlib import Path
-sys.path[0] = {str(ROOT)!r}
-from tests.benchmarks.bench_lockstep import measure
-print(json.dumps(measure(Path(sys.argv[1]))))
-"""
+CAPSTONE = "08_capstone"
 CHAIN = ("first", "second", "third")
 RELAY = """#!/usr/bin/env python3
 import rclpy
@@ -49,21 +39,23 @@ except KeyboardInterrupt:
 
 
 def figures() -> dict[str, float]:
-    """Return `lockstep.steps_per_s` and `lockstep.three_programs_steps_per_s`, each the median of several runs."""
-    report = run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", RUN, str(scratch)], Isolation.BUBBLEWRAP)
-    if report.returncode != 0:
-        raise RuntimeError(report.output)
-    rates = json.loads(report.output.splitlines()[-1])
-    return {name: round(statistics.median(runs), 1) for name, runs in rates.items()}
+    """Return steps per second, each the median of several runs, and `lockstep.activations_capstone`.
+
+    The latter is how often lockstep runs one of the programs in a grading. It is the same in each grading.
+    """
+    rates = in_worker_sandbox(measure)
+    return {
+        **{name: round(statistics.median(runs), 1) for name, runs in rates.items()},
+        "lockstep.activations_capstone": in_worker_sandbox(count_activations),
+    }
 
 
 def measure(scratch: Path) -> dict[str, list[float]]:
     """Return the steps per second of each run; this function runs in a worker sandbox."""
+    from autograder.harness import Workspace
     from autograder.ros import activate
 
     ros = activate()
-    from autograder.harness import Workspace
-
     (scratch / "home").mkdir()
     return {
         "lockstep.steps_per_s": _measure_one_node(Workspace(scratch / "one", ros, scratch / "home")),
@@ -71,6 +63,23 @@ def measure(scratch: Path) -> dict[str, list[float]]:
             Workspace(scratch / "three", ros, scratch / "home")
         ),
     }
+
+
+def count_activations(scratch: Path) -> int:
+    """Return the activations in a grading of the capstone's reference; this function runs in a worker sandbox."""
+    from autograder.author.verification.mutants import write_reference
+    from autograder.grade import DEFAULT_SEED
+    from autograder.grade.job import Job
+    from autograder.grade.worker import Grading
+    from autograder.run.lockstep import Stepper
+
+    job = Job(scratch / "reference", CAPSTONE, "reference", DEFAULT_SEED, scratch / "out", scratch=scratch)
+    write_reference(job.suite.sources, job.path)
+    with patch.object(Stepper, "step", autospec=True, side_effect=Stepper.step) as step:
+        result = Grading(job).grade()
+    if result.score != result.max_score:
+        raise RuntimeError(f"the reference has {result.score:g} of {result.max_score:g} points")
+    return step.call_count
 
 
 def _measure_one_node(workspace: Any) -> list[float]:

@@ -1,9 +1,9 @@
-"""Measure the simulator on one core, and ir-sim in the same run, in a 20 m x 20 m room of 40 walls.
+"""Measure the simulator and, for comparison, ir-sim on one core, in a room of 20 m x 20 m with 40 walls.
 
 A scan is the ray casting alone: exact ranges in double precision for a pose. `observe` adds what a LaserScan needs. The
 loop runs physics at 50 Hz and scans at 10 Hz through the public functions, in open space and against a wall. In each of
-several rounds, all subjects are measured in turn. A figure is the smallest median of a round, which other load on the
-machine disturbs little.
+several rounds, all subjects are measured in turn. A figure is the smallest of the rounds' medians, on which other load
+on the machine has little effect.
 """
 
 from __future__ import annotations
@@ -57,22 +57,24 @@ def open_space(begin: NDArray[np.float64], end: NDArray[np.float64]) -> tuple[fl
 
 
 def caster(world: World, lidar: LidarSpec, engine: str) -> Callable[[Pose], object]:
-    """Return the engine's own scan, called as by `observe`."""
+    """Return a function that calls the engine's scan in the same way as `observe`."""
     scene = Simulation(world, (RobotSpec(lidar=lidar),), engine=engine).scene  # type: ignore[arg-type]
     beams = scene.bodies[0].beams
     assert beams is not None
-    tail = (lidar.angle_min, beams.per_radian, beams.reach)
+    last_arguments = (lidar.angle_min, beams.per_radian, beams.reach)
     walls, grid = layout(world.segments), scene.grid
     if grid is None:
-        return lambda pose: scene.engine.fan(walls, scene.circles, beams.table, pose.x, pose.y, pose.theta, *tail)
+        return lambda pose: scene.engine.fan(
+            walls, scene.circles, beams.table, pose.x, pose.y, pose.theta, *last_arguments
+        )
     cells = (grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows)
     return lambda pose: scene.engine.fan_in_grid(
-        walls, *cells, scene.circles, beams.table, pose.x, pose.y, pose.theta, *tail
+        walls, *cells, scene.circles, beams.table, pose.x, pose.y, pose.theta, *last_arguments
     )
 
 
 def observer(world: World, engine: str) -> Callable[[Pose], object]:
-    """Return a function that calls `observe`, for a LaserScan's fields in single precision."""
+    """Return a function that calls `observe`, which computes a LaserScan's fields in single precision."""
     simulation = Simulation(world, (RobotSpec(lidar=FAR_360),), engine=engine)  # type: ignore[arg-type]
     state = start(simulation)
     robot = state.robots[0]
@@ -80,7 +82,7 @@ def observer(world: World, engine: str) -> Callable[[Pose], object]:
 
 
 def ir_sim(world: World) -> Callable[[Pose], object]:
-    """Return a scan by ir-sim's lidar of 360 beams between the same walls."""
+    """Return a function that scans the same walls with ir-sim's lidar of 360 beams."""
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         import irsim
 
@@ -106,7 +108,7 @@ def ir_sim(world: World) -> Callable[[Pose], object]:
 
 
 def loop(world: World, engine: str, seconds: float, turn: float = 0.8) -> Callable[[], object]:
-    """Return a drive, in a circle or straight on, with a scan, a command and five ticks of physics every 0.1 s."""
+    """Return a function that drives in a circle or straight on, with a scan, a command and five ticks every 0.1 s."""
     simulation = Simulation(world, (RobotSpec(lidar=FAR_360),), engine=engine)  # type: ignore[arg-type]
     first = start(simulation)
     command = Command(0.2, turn)
@@ -153,9 +155,9 @@ def figures(
     """Return all figures, each the best of several rounds.
 
     Args:
-        rounds: the number of measurements of everything.
+        rounds: the number of times that everything is measured.
         poses_per_round: the number of poses in each round.
-        seconds: simulated seconds of each loop.
+        seconds: the simulated duration of each loop.
         compare: whether ir-sim, which only `make bench` installs, is also measured.
     """
     small, large = room(40, 4.0), room(10_000, 0.4)
@@ -175,18 +177,18 @@ def figures(
     loops = {f"sim.loop_{engine}_rtf": loop(small, engine, seconds) for engine in ("numpy", "numba")}
     closet = World.from_segments(box(1.0, 1.0).tolist(), name="a closet")  # a robot soon touches its wall
     loops |= {f"sim.contact_{engine}_rtf": loop(closet, engine, seconds, turn=0.0) for engine in ("numpy", "numba")}
-    for call, _ in subjects.values():  # compile, and warm the caches
+    for call, _ in subjects.values():  # compiles the functions, and warms the caches
         call(poses[0])
-    best = dict.fromkeys(subjects, math.inf)
-    fastest = dict.fromkeys(loops, math.inf)
+    best_us = dict.fromkeys(subjects, math.inf)
+    best_seconds = dict.fromkeys(loops, math.inf)
     for _ in range(rounds):
         for name, (call, calls) in subjects.items():
-            best[name] = min(best[name], median_us(call, poses, calls))
+            best_us[name] = min(best_us[name], median_us(call, poses, calls))
         for name, drive in loops.items():
             begin = time.perf_counter()
             drive()
-            fastest[name] = min(fastest[name], time.perf_counter() - begin)
-    results = {**best, **{name: seconds / elapsed for name, elapsed in fastest.items()}}
+            best_seconds[name] = min(best_seconds[name], time.perf_counter() - begin)
+    results = {**best_us, **{name: seconds / elapsed for name, elapsed in best_seconds.items()}}
     if compare:
         results["sim.irsim_ratio"] = results["sim.scan360_irsim_us"] / results["sim.scan360_numba_us"]
         results["sim.irsim_numpy_ratio"] = results["sim.scan360_irsim_us"] / results["sim.scan360_numpy_us"]

@@ -1,8 +1,8 @@
-"""Measure and draw the speed-up of a class by more workers, for docs/cluster.md.
+"""Measure and draw how much faster more workers grade a class, for docs/cluster.md.
 
 `python -m tests.benchmarks.cluster_scale RESULTS` takes the durations of gradings from stored results. A pause of such
-a duration replaces each grading, so that 64 workers fit on any machine. These are Dask workers with a connection each,
-in one process with the scheduler. `... draw` draws stored measurements again.
+a duration replaces each grading, so that 64 workers fit on any machine. The workers are Dask workers, each with its
+own connection, in one process with the scheduler. `... draw` redraws stored measurements.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from distributed import LocalCluster
 
 from autograder.grade.cluster.connection import PRELOAD, connected
 from autograder.report.export import load
-from tests.benchmarks.bench_cluster import seconds
+from tests.benchmarks.bench_cluster import time_class
 
-MEASURED = Path(__file__).parents[2] / "docs" / "scale.json"
+MEASUREMENTS = Path(__file__).parents[2] / "docs" / "scale.json"
 WORKERS = (1, 4, 16, 64)
 SUBMISSIONS = 5000  # for 64 workers; fewer workers get fewer, so that all clusters take equally long
 
@@ -32,9 +32,9 @@ def main(results: str) -> None:
         pauses = [result.seconds for result in load(Path(results))]
         commands = [[sys.executable, "-m", __spec__.name, json.dumps(pauses), str(workers)] for workers in WORKERS]
         processes = [subprocess.Popen(command, stdout=subprocess.PIPE) for command in commands]
-        measured = [json.loads(process.communicate()[0]) for process in processes]
-        figures = {"cores": os.cpu_count(), "pauses": sorted(set(pauses)), "measured": measured}
-        MEASURED.write_text(json.dumps(figures, indent=1) + "\n")
+        measurements = [json.loads(process.communicate()[0]) for process in processes]
+        figures = {"cores": os.cpu_count(), "pauses": sorted(set(pauses)), "measured": measurements}
+        MEASUREMENTS.write_text(json.dumps(figures, indent=1) + "\n")
     draw()
 
 
@@ -47,14 +47,14 @@ def measure(pauses: list[float], workers: int) -> dict[str, float]:
         with connected(address, 0, Path()) as client:
             client.wait_for_workers(workers)
             submissions = SUBMISSIONS * workers // WORKERS[-1]
-            elapsed, work = seconds(client, submissions, pauses)
+            elapsed, work_seconds = time_class(client, submissions, pauses)
         cluster.communicate()
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return {
         "workers": workers,
         "submissions": submissions,
         "seconds": round(elapsed, 1),
-        "speed_up": round(work / elapsed, 2),
+        "speed_up": round(work_seconds / elapsed, 2),
         "client_mib": round(memory),
     }
 
@@ -78,17 +78,17 @@ def serve(workers: int) -> None:
 
 def draw() -> None:
     """Draw the speed-up beside the ideal one."""
-    measured = json.loads(MEASURED.read_text())["measured"]
-    workers = [point["workers"] for point in measured]
+    measurements = json.loads(MEASUREMENTS.read_text())["measured"]
+    workers = [point["workers"] for point in measurements]
     plt.rcParams["svg.hashsalt"] = "scale"
     figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
     axes.plot(workers, workers, "--", color="0.6", label="as many times as there are workers")
-    axes.plot(workers, [point["speed_up"] for point in measured], "o-", color="#005a8c", label="measured")
+    axes.plot(workers, [point["speed_up"] for point in measurements], "o-", color="#005a8c", label="measured")
     axes.set(xscale="log", yscale="log", xlabel="workers", ylabel="times as fast as one worker", xticks=workers)
     axes.set(yticks=workers, xticklabels=workers, yticklabels=workers)
     axes.minorticks_off()
     axes.legend()
-    figure.savefig(MEASURED.with_suffix(".svg"), metadata={"Date": None})
+    figure.savefig(MEASUREMENTS.with_suffix(".svg"), metadata={"Date": None})
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-"""Measure the memory and processor time that students need on a hub while several run chapter 02 at the same time.
+"""Measure the memory and processor time that students need on a hub while they run chapter 02 at the same time.
 
-`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 30` prints a line for each student, and the highest sum of their
+`sudo .venv/bin/python -m tests.benchmarks.hub_sizing 30` prints a line for each student, and the peak of their total
 memory; docs/jupyterhub.md has the figures. The students use the environment of this clone.
 """
 
@@ -34,13 +34,13 @@ def usage_of(name: str) -> tuple[float, float]:
         try:
             if process.stat().st_uid != uid:
                 continue
-            share = next(
+            pss_line = next(
                 line for line in (process / "smaps_rollup").read_text().splitlines() if line.startswith("Pss:")
             )
             times = (process / "stat").read_text().rpartition(")")[2].split()[11:15]
         except (OSError, StopIteration):
             continue  # the process has ended
-        memory += int(share.split()[1]) / 1024
+        memory += int(pss_line.split()[1]) / 1024
         seconds += sum(map(int, times)) / TICKS
     return memory, seconds
 

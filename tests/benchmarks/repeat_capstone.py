@@ -36,13 +36,13 @@ REPORT = ROOT / ".build" / "capstones.jsonl"
 
 @dataclass(frozen=True)
 class Grading:
-    """One grading: its percentage, failed checks, fingerprints, duration and number of parallel gradings."""
+    """One grading: its percentage, failed checks, traces and duration, and the number of parallel gradings."""
 
-    version: str  # of checks and grader
+    version: str  # the version of the checks and the grader
     number: int
-    at_once: int
+    at_once: int  # parallel gradings
     percent: float
-    lost: tuple[str, ...]
+    lost: tuple[str, ...]  # failed checks, each with its message
     traces: dict[str, str]
     seconds: float
 
@@ -78,8 +78,8 @@ def grade(folder: Path, version: str, at_once: int, number: int) -> Grading:
 def gradings(folder: Path, version: str, times: int, stored_gradings: dict[int, Grading]) -> Iterator[Grading]:
     """Yield the remaining gradings: the first half with a core for each, the others under load."""
     cores = os.cpu_count() or 1
-    half = range(1, times // 2 + 1)
-    for numbers, at_once in ((half, cores), (range(half.stop, times + 1), CROWD * cores)):
+    first_half = range(1, times // 2 + 1)
+    for numbers, at_once in ((first_half, cores), (range(first_half.stop, times + 1), CROWD * cores)):
         with ThreadPoolExecutor(at_once) as pool:
             pending = [
                 pool.submit(grade, folder, version, at_once, number)
@@ -124,15 +124,17 @@ def main() -> int:
     return summarise(list(gradings_by_number.values()))
 
 
-def summarise(graded: list[Grading]) -> int:
+def summarise(all_gradings: list[Grading]) -> int:
     """Report how many gradings agree, and describe how each of the others differs. Return the exit status."""
-    first = graded[0].traces
-    bad = [grading for grading in graded if grading.percent != 100.0 or not grading.traces or grading.traces != first]
-    for grading in bad:
-        different = ", ".join(sorted({name for name, _ in grading.traces.items() ^ first.items()}))
-        print(f"number {grading.number}: {grading.percent:g} %, other traces: {different or 'none'}")
-    print(f"{len(graded) - len(bad)} of {len(graded)} with all points and the same traces: {first}")
-    return 1 if bad else 0
+    first = all_gradings[0].traces
+    others = [
+        grading for grading in all_gradings if grading.percent != 100.0 or not grading.traces or grading.traces != first
+    ]
+    for grading in others:
+        different_traces = ", ".join(sorted({name for name, _ in grading.traces.items() ^ first.items()}))
+        print(f"number {grading.number}: {grading.percent:g} %, other traces: {different_traces or 'none'}")
+    print(f"{len(all_gradings) - len(others)} of {len(all_gradings)} with all points and the same traces: {first}")
+    return 1 if others else 0
 
 
 if __name__ == "__main__":

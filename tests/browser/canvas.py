@@ -1,4 +1,4 @@
-"""Count the pixels of each colour on a canvas of the player."""
+"""What a player shows: the pixels of each colour on its canvas, and the times on its clock."""
 
 from __future__ import annotations
 
@@ -18,6 +18,15 @@ COUNT = """(canvas, colours) => {
         });
     return counts;
 }"""
+
+KEEP_TIMES = """
+window.times = [];
+new MutationObserver(() => {
+    const clock = document.querySelector(".run-player output");
+    if (clock && times.at(-1) !== clock.textContent) times.push(clock.textContent);
+}).observe(document, {childList: true, characterData: true, subtree: true});
+"""
+"""A script for a page that is not yet open. It keeps all times of the first player's clock in `times`."""
 
 LATE = to_hex(LIGHT.time_colours(0)(0.75))
 """The colour of a track shortly before its end, which the robot covers."""

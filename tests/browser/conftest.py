@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from tests.browser.looks import Screenshots
+
 FLAGS = (
     "--headless",
     "--no-sandbox",
@@ -47,8 +49,8 @@ def page(chromium: Browser) -> Iterator[Page]:
 
 
 @pytest.fixture(scope="session")
-def screenshots() -> Path:
-    """The folder of the screenshots, for people to inspect."""
+def screenshots() -> Screenshots:
+    """Takes the screenshots of a page: on a desktop and on a phone, in light and in dark."""
     folder = ROOT / ".build" / "screenshots"
     folder.mkdir(parents=True, exist_ok=True)
-    return folder
+    return Screenshots(folder)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from autograder.report import feedback
+from autograder.report.export import write
 from autograder.result.artifacts import Artifacts
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.suite import Check, Outcome
+from tests.browser.looks import Screenshots, check_accessibility
 from tests.browser.wall_run import save_run
 
 pytestmark = pytest.mark.browser
@@ -34,7 +37,7 @@ def flawed_page(make_result: Callable[..., Result], track: Callable[..., Artifac
 
 
 def test_the_track_is_shown_and_hints_unfold(
-    page: Page, flawed_page: Path, browser_messages: list[str], screenshots: Path
+    page: Page, flawed_page: Path, browser_messages: list[str], screenshots: Screenshots
 ) -> None:
     page.goto(flawed_page.as_uri())
     expect(page.get_by_role("heading", level=1)).to_have_text("alice")
@@ -50,19 +53,17 @@ def test_the_track_is_shown_and_hints_unfold(
     page.get_by_text("Second hint", exact=True).click()
     expect(second).to_be_visible()
 
-    page.screenshot(path=screenshots / "feedback.png", full_page=True)
+    screenshots(page, "feedback", full_page=True)
     assert browser_messages == []
 
 
-@pytest.mark.parametrize("width", [1280, 390])
 def test_consequences_unfold_below_their_cause(
     page: Page,
     make_result: Callable[..., Result],
     make_check: Callable[..., Check],
     tmp_path: Path,
     browser_messages: list[str],
-    screenshots: Path,
-    width: int,
+    screenshots: Screenshots,
 ) -> None:
     first = make_check("first", "It drives where the way is clear.", 1.0, "graph")
     consequences = [
@@ -73,18 +74,16 @@ def test_consequences_unfold_below_their_cause(
         *(CheckResult.of(check, Outcome.FAILED, "it stood still at 0.0 m/s") for check in (first, *consequences)),
         CheckResult.of(blind, Outcome.NOT_CHECKED, "not checked"),
     )
-    page.set_viewport_size({"width": width, "height": 800})
     page.goto(feedback.write(make_result(checks=checks), tmp_path).as_uri())
     also = page.get_by_text("It does another thing, number 2.")
     expect(also).to_be_hidden()
     expect(page.get_by_text("Not checked: It stands still where it is blind.")).to_be_visible()
-    page.screenshot(path=screenshots / f"feedback-folded-{width}.png", full_page=True)
+    screenshots(page, "feedback-folded", full_page=True)
     page.get_by_text("These also failed. Fix the one above first, then run again: 3").click()
     expect(also).to_be_visible()
     page.get_by_text("1 check did not pass with").get_by_role("link").click()
     expect(page.locator("#check-first")).to_be_in_viewport()
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    page.screenshot(path=screenshots / f"feedback-unfolded-{width}.png", full_page=True)
+    screenshots(page, "feedback-unfolded", full_page=True)
     assert browser_messages == []
 
 
@@ -95,7 +94,11 @@ def test_consequences_unfold_below_their_cause(
     "in the same player",
 )
 def test_the_run_of_a_failed_check_plays(
-    page: Page, make_result: Callable[..., Result], tmp_path: Path, browser_messages: list[str], screenshots: Path
+    page: Page,
+    make_result: Callable[..., Result],
+    tmp_path: Path,
+    browser_messages: list[str],
+    screenshots: Screenshots,
 ) -> None:
     artifacts = Artifacts(tmp_path)
     for check in ("starts", "turns"):
@@ -111,32 +114,28 @@ def test_the_run_of_a_failed_check_plays(
     page.goto(f"{path.as_uri()}#run=run-starts-track&t=1.0")
     expect(page.locator("#run-starts-track output")).to_have_text("1.00 s")
     expect(page.locator("#run-starts-track canvas")).to_be_visible()  # the link has opened its details
-    for scheme in ("light", "dark"):
-        page.emulate_media(color_scheme=scheme)
-        page.screenshot(path=screenshots / f"feedback-run-{scheme}.png", full_page=True)
+    screenshots(page, "feedback-run", full_page=True)
     page.emulate_media(media="print")
     expect(player.locator("img")).to_be_visible()
     expect(player.locator("canvas")).to_be_hidden()
     assert browser_messages == []
 
 
-def test_the_page_fits_a_phone(page: Page, flawed_page: Path, browser_messages: list[str], screenshots: Path) -> None:
+def test_the_page_fits_a_phone(page: Page, flawed_page: Path, browser_messages: list[str]) -> None:
     page.set_viewport_size({"width": 360, "height": 740})
     page.goto(flawed_page.as_uri())
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
-    page.screenshot(path=screenshots / "feedback-phone.png", full_page=True)
     assert browser_messages == []
 
 
 def test_the_page_is_dark_if_the_browser_prefers_dark(
-    page: Page, flawed_page: Path, browser_messages: list[str], screenshots: Path
+    page: Page, flawed_page: Path, browser_messages: list[str]
 ) -> None:
     page.goto(flawed_page.as_uri())
     colour = "getComputedStyle(document.body).backgroundColor"
     light = page.evaluate(colour)
     page.emulate_media(color_scheme="dark")
     assert page.evaluate(colour) != light
-    page.screenshot(path=screenshots / "feedback-dark.png", full_page=True)
     assert browser_messages == []
 
 
@@ -158,16 +157,33 @@ def test_the_class_table_links_to_each_page(
     track: Callable[..., Artifact],
     tmp_path: Path,
     browser_messages: list[str],
-    screenshots: Path,
+    screenshots: Screenshots,
 ) -> None:
     results = [make_result("anna é%?#", artifacts=(track(tmp_path / "anna é%?#"),)), broken_result, ungraded_result]
     for result in results:
         feedback.write(result, tmp_path / result.student)
     page.goto(feedback.write_summary(results, tmp_path).as_uri())
-    page.screenshot(path=screenshots / "summary.png", full_page=True)
+    screenshots(page, "class", full_page=True)
     for result in results:
         page.get_by_role("link", name=result.student).click()
         expect(page.get_by_role("heading", level=1)).to_have_text(result.student)
-        page.screenshot(path=screenshots / f"feedback-{result.status.value}-{len(result.checks)}.png", full_page=True)
+        screenshots(page, f"feedback-{result.status.value}-{len(result.checks)}", full_page=True)
         page.go_back()
+    assert browser_messages == []
+
+
+def test_axe_finds_no_violation_in_the_page_of_other_answers(
+    page: Page,
+    make_result: Callable[..., Result],
+    tmp_path: Path,
+    browser_messages: list[str],
+    screenshots: Screenshots,
+) -> None:
+    checks = tuple(replace(check, points=check.max_points) for check in make_result().checks)
+    out = write([make_result(checks=checks)], "other_answers", tmp_path)
+    page.goto((out / "alice" / "other_answers.html").as_uri())
+    page.locator("summary").first.click()
+    expect(page.locator("pre").first).to_be_visible()
+    screenshots(page, "other-answers", full_page=True)
+    check_accessibility(page)
     assert browser_messages == []

@@ -12,8 +12,9 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.canvas import missing
+from tests.browser.canvas import KEEP_TIMES, missing
 from tests.browser.jupyter import PATIENCE, Lab, lab
+from tests.browser.looks import DRAWN, Screenshots
 
 __all__ = ["lab"]
 
@@ -84,12 +85,12 @@ def wait_until_still(page: Page, image: Locator) -> None:
     )
 
 
-def test_the_robot_moves_pauses_and_follows_the_pad(page: Page, lab: Lab, screenshots: Path) -> None:
+def test_the_robot_moves_pauses_and_follows_the_pad(page: Page, lab: Lab, screenshots: Screenshots) -> None:
     lab.open(page, "drive.ipynb", [DRIVE.format(world=str(ROOT / "assets/worlds/lab.yaml"))])
     image = page.locator(".jp-OutputArea-output img").first
     expect(image).to_be_visible(timeout=PATIENCE * 1000)
     wait_until_moved(image, pixels(image))
-    page.screenshot(path=screenshots / "live-view-playing.png")
+    page.screenshot(path=screenshots.folder / "live-view-playing.png")
 
     page.get_by_title("Pause", exact=True).click()
     expect(page.get_by_title("Play", exact=True)).to_be_visible(timeout=PATIENCE * 1000)
@@ -102,7 +103,7 @@ def test_the_robot_moves_pauses_and_follows_the_pad(page: Page, lab: Lab, screen
     for _ in range(5):
         page.get_by_title("One step of 0.1 s").click()
     wait_until_moved(image, paused, least=10)
-    page.screenshot(path=screenshots / "live-view-pad.png")
+    page.screenshot(path=screenshots.folder / "live-view-pad.png")
 
     page.get_by_title("Back to the start").click()
     wait_until_moved(image, paused)
@@ -112,17 +113,19 @@ def test_the_robot_moves_pauses_and_follows_the_pad(page: Page, lab: Lab, screen
     wait_until_moved(image, start)
 
 
-def test_an_error_of_the_callback_is_shown_in_the_cell(page: Page, lab: Lab, screenshots: Path) -> None:
+def test_an_error_of_the_callback_is_shown_in_the_cell(page: Page, lab: Lab, screenshots: Screenshots) -> None:
     first = DRIVE.format(world=str(ROOT / "assets/worlds/empty_room.yaml")).replace("\nview\n", "\nview.pause()\n")
     lab.open(page, "break.ipynb", [first, BREAK])
     error = page.get_by_text("ZeroDivisionError: float division by zero").first
     expect(error).to_be_visible(timeout=PATIENCE * 1000)
     expect(page.get_by_text("in broken")).to_be_visible()
     expect(page.get_by_title("Play", exact=True)).to_be_visible()
-    page.screenshot(path=screenshots / "live-view-error.png")
+    page.screenshot(path=screenshots.folder / "live-view-error.png")
 
 
-def test_a_drive_plays_in_the_notebook_which_gets_none_of_its_keys(page: Page, lab: Lab, screenshots: Path) -> None:
+def test_a_drive_plays_in_the_notebook_which_gets_none_of_its_keys(
+    page: Page, lab: Lab, screenshots: Screenshots
+) -> None:
     first = DRIVE.format(world=str(ROOT / "assets/worlds/smile.yaml")).replace("\nview\n", "\nview.pause()\n")
     lab.open(page, "replay.ipynb", [first, REPLAY])
     player = page.locator(".run-player")
@@ -132,7 +135,7 @@ def test_a_drive_plays_in_the_notebook_which_gets_none_of_its_keys(page: Page, l
     expect(clock).to_have_text("5.00 s")
     assert missing(canvas) == []
     canvas.scroll_into_view_if_needed()
-    page.screenshot(path=screenshots / "drive-in-notebook.png")
+    page.screenshot(path=screenshots.folder / "drive-in-notebook.png")
     page.locator(".jp-Cell .jp-InputPrompt").first.click()  # command mode, in which b adds a cell
     canvas.hover()
     cells = page.locator(".jp-Notebook .jp-Cell").count()
@@ -144,11 +147,36 @@ def test_a_drive_plays_in_the_notebook_which_gets_none_of_its_keys(page: Page, l
     assert page.locator(".jp-Notebook .jp-Cell").count() == cells
     player.get_by_role("button", name="Play").click()
     expect(clock).to_have_text("5.00 s", timeout=PATIENCE * 1000)
-    page.screenshot(path=screenshots / "replay-in-notebook.png")
+    page.screenshot(path=screenshots.folder / "replay-in-notebook.png")
+
+
+def test_a_drive_plays_once_by_itself_and_rests_at_its_end(page: Page, lab: Lab, screenshots: Screenshots) -> None:
+    page.emulate_media(reduced_motion="no-preference")
+    page.add_init_script(KEEP_TIMES)
+    world = str(ROOT / "assets/worlds/smile.yaml")
+    first = f"from sim import Command, RobotSpec, Simulation, load_world\nworld = load_world({world!r})"
+    lab.open(page, "autoplay.ipynb", [first, REPLAY, *["print()"] * 40])
+    player = page.locator(".run-player")
+    canvas, play = player.locator("canvas"), player.get_by_role("button", name="Play")
+    expect(canvas).to_be_visible(timeout=PATIENCE * 1000)
+    canvas.scroll_into_view_if_needed()
+    page.wait_for_function("times.length > 2 && times.at(-1) === '5.00 s'", timeout=PATIENCE * 1000)
+    expect(play).to_be_visible()
+    times = page.evaluate("times")
+    assert times[:2] == ["5.00 s", "0.00 s"]
+    assert missing(canvas) == []
+    page.screenshot(path=screenshots.folder / "autoplay-in-notebook.png")
+    page.locator(".jp-Cell").last.scroll_into_view_if_needed()
+    expect(canvas).not_to_be_in_viewport()
+    canvas.scroll_into_view_if_needed()
+    expect(canvas).to_be_in_viewport()
+    page.evaluate(DRAWN)
+    expect(play).to_be_visible()
+    assert page.evaluate("times") == times
 
 
 def test_a_static_picture_is_shown_in_the_notebook_with_its_alternative_text(
-    page: Page, lab: Lab, screenshots: Path
+    page: Page, lab: Lab, screenshots: Screenshots
 ) -> None:
     world = str(ROOT / "assets/worlds/maze.yaml")
     lab.open(
@@ -157,4 +185,4 @@ def test_a_static_picture_is_shown_in_the_notebook_with_its_alternative_text(
     picture = page.get_by_alt_text("Map of the world “maze”", exact=False)
     expect(picture).to_be_visible(timeout=PATIENCE * 1000)
     assert picture.evaluate("image => image.naturalWidth") > 500
-    page.screenshot(path=screenshots / "show-world.png")
+    page.screenshot(path=screenshots.folder / "show-world.png")

@@ -8,14 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 
 from sim import Command, Recording, RobotSpec, Simulation, load_world, run
 from sim.export import to_html
 from sim.view import LIGHT, Margin, Player
 from sim.view.player import page as page_of
-from tests.browser.canvas import LATE, count, missing
+from tests.browser.canvas import KEEP_TIMES, LATE, count, missing
+from tests.browser.looks import Screenshots, check_accessibility
 
 pytestmark = pytest.mark.browser
 
@@ -24,15 +24,6 @@ PATIENCE = 120_000.0  # milliseconds: a deadline, not an expectation
 MAX_BYTES = 300_000
 STORED = re.compile(r'<script type="application/json">(.*?)</script>', re.DOTALL)
 AHEAD, ROUND = Command(0.4, 0.2), Command(0.3, 0.5)
-RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
-
-KEEP_TIMES = """
-window.times = [];
-new MutationObserver(() => {
-    const clock = document.querySelector(".run-player output");
-    if (clock && times.at(-1) !== clock.textContent) times.push(clock.textContent);
-}).observe(document, {childList: true, characterData: true, subtree: true});
-"""
 
 COUNT_FRAMES = """seconds => new Promise(resolve => {
     let frames = 0;
@@ -75,7 +66,7 @@ def canvas_picture(page: Page) -> str:
 
 @pytest.mark.parametrize("width", [1280, 390])
 def test_a_run_opens_at_its_end_with_everything_that_its_picture_shows(
-    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Path, width: int
+    page: Page, browser_messages: list[str], tmp_path: Path, width: int
 ) -> None:
     page.set_viewport_size({"width": width, "height": 800})
     page.goto(to_html(drive("smile", 6.0, ROUND), tmp_path / "run.html").as_uri())
@@ -84,8 +75,6 @@ def test_a_run_opens_at_its_end_with_everything_that_its_picture_shows(
     assert missing(canvas) == []
     expect(page.locator(".run-title")).to_contain_text("Smile")
     expect(page.locator(".run-title")).to_contain_text("never nearer than")
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    page.screenshot(path=screenshots / f"run-page-{width}.png")
     page.keyboard.press("Home")
     late, robot = count(canvas, LATE, LIGHT.robot)
     assert late < 5  # the future path is thin, in the robot's colour
@@ -122,7 +111,7 @@ def test_a_run_is_a_picture_without_javascript(chromium: Browser, tmp_path: Path
 
 
 def test_the_player_plays_to_the_end_of_the_run_and_stops(
-    page: Page, run_page: Path, browser_messages: list[str], screenshots: Path
+    page: Page, run_page: Path, browser_messages: list[str]
 ) -> None:
     clock = page.locator(".run-player output")
     page.keyboard.press("Home")
@@ -133,7 +122,6 @@ def test_the_player_plays_to_the_end_of_the_run_and_stops(
     expect(clock).to_have_text("2.00 s", timeout=PATIENCE)
     expect(page.get_by_role("button", name="Play")).to_be_visible()
     assert canvas_picture(page) != before
-    page.screenshot(path=screenshots / "run-page.png")
     assert browser_messages == []
 
 
@@ -202,7 +190,7 @@ def test_keys_control_the_player_under_the_mouse_unless_a_field_has_the_focus(pa
 
 
 def test_the_picture_zooms_moves_and_follows_the_robot(
-    page: Page, run_page: Path, browser_messages: list[str], screenshots: Path
+    page: Page, run_page: Path, browser_messages: list[str], screenshots: Screenshots
 ) -> None:
     canvas, whole = page.locator(".run-player canvas"), canvas_picture(page)
     canvas.hover()
@@ -225,13 +213,15 @@ def test_the_picture_zooms_moves_and_follows_the_robot(
     follow.click()
     expect(follow).to_have_attribute("aria-pressed", "true")
     assert count(canvas, LIGHT.robot) > count(canvas, LIGHT.alarm)
-    page.screenshot(path=screenshots / "run-page-follow.png")
+    screenshots(page, "run-page-follow")
     follow.click()
     expect(follow).to_have_attribute("aria-pressed", "false")
     assert browser_messages == []
 
 
-def test_several_robots_are_named(page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Path) -> None:
+def test_several_robots_are_named(
+    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Screenshots
+) -> None:
     robots = (RobotSpec(name="one", radius=0.18), RobotSpec(name="two", radius=0.18))
     world = load_world(ROOT / "assets" / "worlds" / "moving_obstacle.yaml")
     commands = {"one": Command(0.3, 0.2), "two": Command(0.2, -0.3)}
@@ -244,16 +234,13 @@ def test_several_robots_are_named(page: Page, browser_messages: list[str], tmp_p
     page.get_by_role("button", name="Follow").click()
     page.get_by_role("button", name="Follow: one").click()
     expect(page.get_by_role("button", name="Follow: two")).to_be_visible()
-    page.screenshot(path=screenshots / "run-page-robots.png")
+    screenshots(page, "run-page-robots")
     assert browser_messages == []
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_no_violation_in_the_player(page: Page, run_page: Path, scheme: str, screenshots: Path) -> None:
-    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
-    page.screenshot(path=screenshots / f"run-page-{scheme}.png")
-    report = Axe().run(page, options=RULES)
-    assert report.violations_count == 0, report.generate_report()
+def test_axe_finds_no_violation_in_the_player(page: Page, run_page: Path, screenshots: Screenshots) -> None:
+    screenshots(page, "run-page")
+    check_accessibility(page)
 
 
 def test_a_link_with_an_instant_opens_the_run_at_that_instant(
@@ -284,7 +271,7 @@ def test_the_player_is_dark_if_the_browser_prefers_dark(page: Page, run_page: Pa
 
 
 def test_a_broken_rule_shows_its_instant_and_a_click_jumps_to_it(
-    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Path
+    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Screenshots
 ) -> None:
     recording = drive("lab", 60.0)
     gaps, times = recording.clearances[:, 0], recording.times
@@ -305,18 +292,18 @@ def test_a_broken_rule_shows_its_instant_and_a_click_jumps_to_it(
     expect(page.locator(".run-margin")).to_contain_text(f"{abs(gaps[row] - 0.01):.2f}")
     page.locator(".run-margin svg").click(position={"x": 0, "y": 30})
     expect(page.locator(".run-player output")).to_have_text("0.00 s")
-    page.screenshot(path=screenshots / "run-page-rule.png")
+    screenshots(page, "run-page-rule", full_page=True)
     page.get_by_role("button", name="Play").click()
     print(f"a minute: {size} bytes, {page.evaluate(COUNT_FRAMES, 2.0):.0f} frames/s")
     assert browser_messages == []
 
 
 def test_lines_of_programs_are_shown_as_text_with_their_instants(
-    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Path
+    page: Page, browser_messages: list[str], tmp_path: Path, screenshots: Screenshots
 ) -> None:
     attack = "<script>document.title = 'owned'</script><img src=x onerror=\"document.title='owned'\">"
     flood = tuple((0.5 + number / 1000, f"[INFO] [loop]: {number}") for number in range(1000))
-    recording = replace(drive("lab", 3.0), said=((0.3, attack), *flood, (2.0, "the last one")))
+    recording = replace(drive("lab", 3.0), log_lines=((0.3, attack), *flood, (2.0, "the last one")))
     page.goto(to_html(recording, tmp_path / "run.html").as_uri())
     lines, clock = page.locator(".run-log li"), page.locator(".run-player output")
     expect(lines).to_have_count(1002, timeout=PATIENCE)
@@ -333,6 +320,6 @@ def test_lines_of_programs_are_shown_as_text_with_their_instants(
     for key, time in (("Shift+L", "2.00"), ("Shift+L", "1.50"), ("Home", "0.00"), ("l", "0.30")):
         page.keyboard.press(key)
         expect(clock).to_have_text(f"{time} s")
-    page.screenshot(path=screenshots / "run-page-log.png", full_page=True)
+    screenshots(page, "run-page-log", full_page=True)
     assert page.title() == "the lab: 3.0 s"
     assert browser_messages == []

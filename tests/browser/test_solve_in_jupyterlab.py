@@ -23,6 +23,7 @@ from autograder.author.course.cells import is_solution
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import Chapter, chapters
 from tests.browser.jupyter import Lab, lab
+from tests.browser.looks import Screenshots
 
 __all__ = ["lab"]
 
@@ -115,7 +116,9 @@ def is_blank(picture: str) -> bool:
 @pytest.mark.slow
 @pytest.mark.timeout(60 * MINUTES + 120)
 @pytest.mark.parametrize("chapter", CHOSEN)
-def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screenshots: Path, chapter: Chapter) -> None:
+def test_a_chapters_release_is_solved_in_jupyterlab(
+    page: Page, lab: Lab, screenshots: Screenshots, chapter: Chapter
+) -> None:
     name = chapter.assignment
     shutil.copytree(chapter.folder, lab.folder / name, ignore=shutil.ignore_patterns("build", "install", "log"))
     nbformat.write(in_form(chapter.read(), Form.RELEASED), lab.folder / name / chapter.notebook_path.name)
@@ -148,5 +151,5 @@ def test_a_chapters_release_is_solved_in_jupyterlab(page: Page, lab: Lab, screen
     ]
     page.set_viewport_size({"width": 1100, "height": 1100})
     for cell in (*figures[:1], *[cell for cell, pictures in pictures_by_cell.items() if pictures][:3], checks[-1]):
-        photograph(page, cell, screenshots / f"tour-{name}-{cell}.png")
+        photograph(page, cell, screenshots.folder / f"tour-{name}-{cell}.png")
     page.close()

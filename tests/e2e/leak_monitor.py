@@ -68,12 +68,12 @@ def _charged_memory(group: cgroup.ControlGroup) -> int:
 def _grade(folder: str, assignment: str, paths: dict[str, str], only: list[str]) -> None:
     """Grade submissions, two at once."""
 
-    def grade_each(jobs: Sequence[Job], on_done: OnResult) -> None:
+    def grade_jobs(jobs: Sequence[Job], on_done: OnResult) -> None:
         part = [replace(job, options=Options(only=tuple(only))) for job in jobs]
         map_parallel(grade_submission, part, jobs=2, on_done=on_done)
 
     submissions = {student: Path(path) for student, path in paths.items()}
-    grade_all(submissions, assignment, seed=DEFAULT_SEED, out=Path(folder, "results"), jobs=2, grade_each=grade_each)
+    grade_all(submissions, assignment, seed=DEFAULT_SEED, out=Path(folder, "results"), jobs=2, grade_jobs=grade_jobs)
 
 
 def _leftovers() -> dict[str, list[str]]:

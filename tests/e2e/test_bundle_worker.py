@@ -8,7 +8,7 @@ from threading import Thread
 
 import pytest
 
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.exceptions import StudentError
 from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.limits import SOURCES
@@ -39,10 +39,10 @@ def build_in_worker(folder: Path, script: str) -> Path:
     ours, theirs = Pipe()
     with ours, theirs:
         sources = read_tree(folder / "sources", SOURCES)
-        worker = Thread(target=keeper.attend, args=(ours, Isolation.BUBBLEWRAP, lambda: True))
+        worker = Thread(target=bundle_server.serve_worker, args=(ours, Isolation.BUBBLEWRAP, lambda: True))
         worker.start()
         try:
-            keeper.ask(theirs, sources, folder / "made")
+            bundle_server.request_build(theirs, sources, folder / "made")
         finally:
             theirs.close()
             worker.join()

@@ -11,7 +11,7 @@ import pytest
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.probes.calls import StepResult, call, callback, calls, look, made, same, value
+from autograder.probes.calls import StepResult, attribute, call, callback, calls, result_of, same, value
 from autograder.ros import environment
 from autograder.suite import CheckFailed
 
@@ -93,14 +93,14 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 def test_values_are_passed_as_json_with_nan_and_infinities(workspace: Workspace) -> None:
-    doubled, limit = calls(workspace, "demo", call("double", [1.0, nan, inf]), look("LIMIT"))
+    doubled, limit = calls(workspace, "demo", call("double", [1.0, nan, inf]), attribute("LIMIT"))
     assert same(doubled.value, [2.0, nan, inf])
     assert doubled.printed == "doubling\n"
     assert limit.value == 3.5
 
 
 def test_a_value_made_by_a_step_can_be_used_in_later_steps(workspace: Workspace) -> None:
-    steps = (call("Counter", start=2), call("Counter", 3), call("add", made(1), on=0), look("count", on=0))
+    steps = (call("Counter", start=2), call("Counter", 3), call("add", result_of(1), on=0), attribute("count", on=0))
     outcomes = calls(workspace, "demo", *steps)
     assert [outcome.value for outcome in outcomes] == [None, None, 5, 5]
 

@@ -24,7 +24,7 @@ from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.machine import resource
 from autograder.grade.cluster.task import Reply, Task
 from autograder.grade.job import Job
-from autograder.grade.pipeline import refused
+from autograder.grade.pipeline import unclear_result
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Isolation
 from autograder.submission.intake import detect_layout
@@ -139,7 +139,7 @@ def reply_without_grading(data: bytes) -> bytes:
     if task.files[0].data == b"bob":
         os.kill(os.getpid(), signal.SIGKILL)
     result = replace(
-        refused(task.job, Diagnosis(Kind.BUILD_FAILED, "no")),
+        unclear_result(task.job, Diagnosis(Kind.BUILD_FAILED, "no")),
         submission_sha256=detect_layout(list(task.files), ASSIGNMENT).sha256,
         status=Status.GRADED,
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from autograder.building.build import build
-from autograder.building.cmake_overlay import COMPILED, LEFT_OUT, write_overlay
+from autograder.building.cmake_overlay import COMPILED, EXCLUDED, write_overlay
 from autograder.course_paths import SOLUTIONS
 from autograder.harness import Workspace
 from autograder.ros import activate
@@ -23,7 +23,7 @@ def overlay(tmp_path: Path) -> Path:
 
 def test_every_generator_of_this_ros_has_its_config(overlay: Path) -> None:
     present = {
-        name for name in (*COMPILED, *LEFT_OUT) if any((p / "share" / name).is_dir() for p in activate().prefixes)
+        name for name in (*COMPILED, *EXCLUDED) if any((p / "share" / name).is_dir() for p in activate().prefixes)
     }
     assert present >= set(COMPILED)
     assert {path.name for path in (overlay / "share").iterdir()} == present

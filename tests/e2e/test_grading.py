@@ -223,7 +223,9 @@ def worker(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     def replace(*codes: str) -> None:
         programs = itertools.cycle(codes)
         monkeypatch.setattr(
-            own_sandbox, "_worker", lambda job, line: [sys.executable, "-c", next(programs), job.to_json(), str(line)]
+            own_sandbox,
+            "_worker_command",
+            lambda job, line: [sys.executable, "-c", next(programs), job.to_json(), str(line)],
         )
 
     return replace

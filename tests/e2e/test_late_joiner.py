@@ -11,7 +11,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
-from autograder.probes.late_joiner import kept_messages
+from autograder.probes.late_joiner import count_kept_messages
 from autograder.ros.domains import Domain
 
 
@@ -34,4 +34,4 @@ def test_a_late_joiner_counts_the_messages_that_a_publisher_keeps(node: Node, de
     )
     for number in range(5):
         publisher.publish(String(data=str(number)))
-    assert kept_messages(node, "/status", String) == depth
+    assert count_kept_messages(node, "/status", String) == depth

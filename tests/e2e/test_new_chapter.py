@@ -90,6 +90,24 @@ def test_git_ignores_what_is_built_in_a_new_course(course: Path, tmp_path: Path)
     "Without `--only`, `verify` also generates small errors in everything that students write",
     "Without `--quick`, `verify` also generates mutants",
 )
+@pytest.mark.slow
+def test_verify_lists_the_generated_mutants_that_no_check_fails(course: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(course, tmp_path / "copy")
+    node = copy / "solutions" / "mapping" / "mapping" / "nearest.py"
+    condition = "reading <= scan.range_max"
+    node.write_text(node.read_text().replace(condition, f"{condition} and reading < 1e9"))  # no check publishes 1e9 m
+    process = autograder(copy, "verify --assignment 10_mapping --mutants -j 2")
+    assert process.returncode == 1
+    survivors = re.findall(r"survives without a reason\n.*\n.*\n +\+ (.*)$", process.stderr, re.MULTILINE)
+    assert f"return scan.range_min <= {condition} and (reading <= 1e9)" in survivors, process.stderr
+    killed_count, count = map(int, re.findall(r"(\d+) of (\d+) mutants killed", process.stdout)[0])
+    assert (count > 20, count - killed_count) == (True, len(survivors)), process.stdout
+
+
+@pytest.mark.promise(
+    "Without `--only`, `verify` also generates small errors in everything that students write",
+    "Without `--quick`, `verify` also generates mutants",
+)
 @pytest.mark.nightly
 def test_every_mutant_of_new_chapters_is_killed(course: Path) -> None:
     process = autograder(course, "verify -j 2")
@@ -105,6 +123,7 @@ def test_the_notebook_of_a_new_chapter_runs_as_source_and_as_released(course: Pa
     assert process.returncode == 0, process.stdout + process.stderr
 
 
+@pytest.mark.promise("A package called `launch` would hide ROS's own")
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -18,7 +18,7 @@ from nbgrader.validator import Validator
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import chapters
 from autograder.author.verification.mutants import mutants, write_mutant, write_reference
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.building.interfaces import Cache
 from autograder.course_paths import SOLUTIONS
 from autograder.notebook import check, drive, ros, stored_results
@@ -77,7 +77,8 @@ def test_check_reuses_message_packages_that_were_built_before(tmp_path: Path) ->
     tree |= {
         replace(entry, path=f"{source.name}/{entry.path}"): data for entry, data in read_tree(source, SOURCES).items()
     }
-    with Cache.default(keeper.CACHE).use(keeper.key(tree), partial(keeper._make, tree, best_isolation())) as cached:
+    make = partial(bundle_server._make, tree, best_isolation())
+    with Cache.default(bundle_server.CACHE).use(bundle_server.key(tree), make) as cached:
         os.utime(cached, (0, 0))  # using the entry updates its time
         report = check("03_interfaces", tmp_path)
         assert isinstance(report, CheckReport)

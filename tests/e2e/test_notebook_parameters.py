@@ -41,7 +41,7 @@ def test_a_parameter_changes_where_the_robot_stops(reference_workspace: Path) ->
         for distance in (0.5, 1.5)
     }
     assert [final_distance(report) for report in drives.values()] == pytest.approx([0.5, 1.5], abs=0.02)
-    lines = [report.recording.said[0] for report in drives.values() if isinstance(report, DriveReport)]
+    lines = [report.recording.log_lines[0] for report in drives.values() if isinstance(report, DriveReport)]
     assert len(lines) == 2
     assert {text for _, text in lines} == {"[INFO] [configured_node]: DefaultRobot is ready"}
     assert lines[0][0] == lines[1][0] <= 0.1

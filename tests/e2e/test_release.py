@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -16,6 +17,7 @@ from autograder import course_paths
 from autograder.author.course.forms import Form, in_form
 from autograder.author.course.sync import chapters
 from autograder.cli import group
+from autograder.ros.distribution import DISTRIBUTION
 
 
 @pytest.fixture(scope="module")
@@ -92,6 +94,26 @@ def test_check_of_the_release_runs_without_the_instructors_modules(release: Path
         [sys.executable, "-m", "autograder", "--help"], cwd=release, env=environment, text=True, capture_output=True
     )
     assert re.findall(r"^  ([a-z]+)  ", help_process.stdout, re.MULTILINE) == ["check", "doctor", "ros", "update"]
+
+
+@pytest.mark.promise("The image activates ROS for everything that it starts, and sets `JUPYTER_CONFIG_PATH`.")
+def test_the_entry_point_of_a_releases_image_activates_ros(release: Path) -> None:
+    """It runs on this machine, in a shell without ROS; `tests/e2e/test_image.py` runs it in the image."""
+    recipe = (release / ".binder" / "Dockerfile").read_text()
+    (settings,) = re.findall(r"\bJUPYTER_CONFIG_PATH=(\S+)$", recipe, re.MULTILINE)
+    folders = settings.replace("${HOME}/course", str(release)).split(":")
+    assert [folder for folder in folders if (Path(folder) / "jupyter_server_config.json").is_file()]
+
+    (entry_point,) = re.findall(r"^ENTRYPOINT (.*)$", recipe, re.MULTILINE)
+    code = "import autograder, os, rclpy; rclpy.init(); print(autograder.__path__[0], os.environ['ROS_DISTRO'])"
+    process = subprocess.run(
+        [*json.loads(entry_point), "python", "-W", "error", "-c", code],
+        cwd=release,
+        env={"PATH": f"{Path(sys.executable).parent}:{os.defpath}", "PYTHONPATH": str(release)},
+        text=True,
+        capture_output=True,
+    )
+    assert process.stdout.split() == [str(release / "autograder"), DISTRIBUTION.name], process.stderr
 
 
 @pytest.mark.promise(

@@ -27,7 +27,7 @@ def test_a_node_that_sleeps_in_each_publish_gets_a_result_within_one_budget(tmp_
 
     def run(job: Job) -> WorkerReport:
         budgets.append(job.seconds)
-        return own_sandbox.in_own_sandbox(job)
+        return own_sandbox.run_in_own_sandbox(job)
 
     job = Job(tmp_path / "alice", "02_nodes", "alice", 3, tmp_path / "out", seconds=30.0)
     result = grade_submission(job, run)

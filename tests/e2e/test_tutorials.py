@@ -25,6 +25,8 @@ from typing import Any
 import pytest
 import yaml
 
+from autograder.course_paths import ROOT
+
 SOURCE = "ROS2_DOCUMENTATION_SOURCE"
 HERE = Path(__file__).parent / "tutorials"
 PAGES: list[dict[str, Any]] = yaml.safe_load((HERE / "pages.yaml").read_text())
@@ -178,6 +180,64 @@ def reader(turtles: Path, tmp_path: Path, ros_domain: int) -> Iterator[Reader]:
 def read_page(page: Step) -> Page:
     """Read a page of the documentation."""
     return Page((Path(os.environ[SOURCE]) / "source/Tutorials" / f"{page['page']}.rst").read_text())
+
+
+SMALL_PAGE = Page("""
+Greetings
+=========
+
+.. code-block:: python
+
+   def greeting(name):
+       return 'Hello ' + name
+
+Add the line
+
+.. code-block:: python
+
+   print(greeting('reader'))
+
+.. code-block:: console
+
+   python3 greeting.py
+   Hello reader
+""")
+
+
+@pytest.mark.promise("It takes commands, code and file changes from the pages")
+def test_a_reader_takes_code_changes_and_commands_from_a_page(tmp_path: Path, ros_domain: int) -> None:
+    reader, line = Reader(tmp_path, tmp_path, ros_domain), "print(greeting('reader'))"
+    reader.do(SMALL_PAGE, {"file": "greeting.py", "code": "python", "with": "def greeting(name):"})
+    reader.do(SMALL_PAGE, {"edit": "greeting.py", "lines": [line], "behind": "return 'Hello ' + name"})
+    assert (tmp_path / "greeting.py").read_text().endswith(f"name\n{line}\n")
+    reader.do(SMALL_PAGE, {"run": "python3 greeting.py", "says": ["Hello reader"]})
+
+
+@pytest.mark.parametrize(
+    ("step", "message"),
+    [
+        ({"run": "python3 other.py"}, "the page does not print: python3 other.py"),
+        ({"edit": "greeting.py", "lines": ["exit()"], "behind": "pass"}, r"the page does not print: exit\(\)"),
+        ({"run": "Hello reader", "says": ["Hello"]}, "command not found"),
+    ],
+    ids=["a command", "a line", "an output"],
+)
+def test_a_step_that_differs_from_its_page_or_fails_is_an_error(
+    tmp_path: Path, ros_domain: int, step: Step, message: str
+) -> None:
+    with pytest.raises(AssertionError, match=message):
+        Reader(tmp_path, tmp_path, ros_domain).do(SMALL_PAGE, step)
+
+
+@pytest.mark.promise('`make tutorials PYTEST_ARGS="-k NAME"` executes one of them')
+def test_make_tutorials_executes_the_one_tutorial_that_is_named() -> None:
+    name = "launch_file"
+    settings = [f"{SOURCE}=/", f"BIN={Path(sys.executable).parent}", f"PYTEST_ARGS=-k {name}"]
+    recipe = subprocess.check_output(["make", "-n", "tutorials", *settings], text=True, cwd=ROOT).splitlines()
+    collect = {**os.environ, "PYTEST_ADDOPTS": "--collect-only -q"}
+    collected = subprocess.check_output(["bash", "-c", recipe[-1]], env=collect, text=True, cwd=ROOT)
+    assert re.findall(r"::(test_\S+)", collected) == [f"{test_a_tutorial_runs_as_printed.__name__}[{name}]"]
+    assert [(one, other) for one in RUN for other in RUN if one in other and one != other] == []
 
 
 @pytest.mark.promise(

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from autograder import course_paths
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.exceptions import StudentError
-from autograder.grade import apart, grade_submission, own_sandbox
+from autograder.grade import grade_submission, isolated_reader, own_sandbox
 from autograder.grade.job import Job
 from autograder.result.model import Result, Status
 from autograder.run.sandbox import Isolation
@@ -113,7 +113,7 @@ def compromise_worker(monkeypatch: pytest.MonkeyPatch, code: str, **names: objec
     constants = "".join(f"{name} = {value!r}\n" for name, value in names.items())
     program = f"{BEGIN}{constants}{code}"
     monkeypatch.setattr(
-        own_sandbox, "_worker", lambda job, line: [sys.executable, "-c", program, job.to_json(), str(line)]
+        own_sandbox, "_worker_command", lambda job, line: [sys.executable, "-c", program, job.to_json(), str(line)]
     )
 
 
@@ -185,14 +185,14 @@ PACKAGE = """<package format="3"><name>forged_msgs</name><version>0.0.1</version
 </package>"""
 CMAKE = "cmake_minimum_required(VERSION 3.8)\nproject(forged_msgs NONE)\ninstall(FILES package.xml DESTINATION share)\n"
 REQUEST_BUILD = """
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import read_tree
 for name, text in FILES.items():
     path = job.scratch / "mine" / "forged_msgs" / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
-keeper.ask(line, read_tree(job.scratch / "mine", SOURCES), job.scratch / "built")
+bundle_server.request_build(line, read_tree(job.scratch / "mine", SOURCES), job.scratch / "built")
 print("BUILT", [str(path.relative_to(job.scratch)) for path in (job.scratch / "built").rglob("package.xml")])
 """
 
@@ -210,8 +210,9 @@ def test_shared_builds_come_from_an_untouched_worker_and_match_their_sources(
     package.mkdir(parents=True)
     for name, text in files.items():
         (package / name).write_text(text)
-    cached = {path.name for path in (classroom / "cache" / "autograder" / keeper.CACHE).iterdir() if path.is_dir()}
-    assert cached == {keeper.key(read_tree(package.parent, SOURCES))}
+    cache = classroom / "cache" / "autograder" / bundle_server.CACHE
+    cached = {path.name for path in cache.iterdir() if path.is_dir()}
+    assert cached == {bundle_server.key(read_tree(package.parent, SOURCES))}
 
 
 @pytest.mark.skipif(
@@ -239,11 +240,11 @@ def test_root_reads_no_submission_for_a_preview_or_a_comparison(
         pytest.fail("root reads a submission")
 
     monkeypatch.setattr(intake, "read_submission", read)
-    preview = apart.read_preview(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP)
+    preview = isolated_reader.read_preview(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP)
     assert (preview.files, preview.unused) == (2, ())
-    assert apart.read_code(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
+    assert isolated_reader.read_code(classroom / "alice", ASSIGNMENT, Isolation.BUBBLEWRAP) == "# pkg/node.py\nx = '\n'"
     with pytest.raises(StudentError, match=r"carol.zip is not a folder"):
-        apart.read_preview(classroom / "carol.zip", ASSIGNMENT, Isolation.BUBBLEWRAP)
+        isolated_reader.read_preview(classroom / "carol.zip", ASSIGNMENT, Isolation.BUBBLEWRAP)
 
 
 REPORT_RIGHTS = """

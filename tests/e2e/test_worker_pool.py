@@ -18,7 +18,7 @@ from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Kind
 from autograder.grade import grade_submission
 from autograder.grade.job import WHOLE_SUITE, Job, Options
-from autograder.grade.own_sandbox import in_own_sandbox
+from autograder.grade.own_sandbox import run_in_own_sandbox
 from autograder.grade.pipeline import RunJob
 from autograder.grade.store import LOG
 from autograder.result.model import Result, Status
@@ -86,7 +86,8 @@ def test_a_shared_sandbox_gives_the_same_results_as_one_for_each_submission(
         assert len(servers()) == 1
     assert servers() == []
     separate = [
-        _grade(path, tmp_path / "separate", in_own_sandbox, SOME_CHECKS) for path in (reference, incomplete_submission)
+        _grade(path, tmp_path / "separate", run_in_own_sandbox, SOME_CHECKS)
+        for path in (reference, incomplete_submission)
     ]
     assert [_verdicts(result) for result in shared] == [_verdicts(separate[number]) for number in (0, 1, 0)]
     for shared_result, separate_result in zip(shared, separate, strict=False):

@@ -1,4 +1,4 @@
-"""Draw the figures of chapter 01_package_structure into its folder, or into the folder given as argument."""
+"""Draw the figures of chapter 01_package_structure into its folder, or into the folder given as an argument."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ MOVES = (
 
 
 def readers() -> Figure:
-    """Return the tree of a package with a line from each file to the tool that reads it."""
+    """Return a figure of the files of a package, with a line from each file to the tool that reads it."""
     figure, ax = _canvas(8.6, 4.9, (0.0, 15.0), (-0.7, 10.7 * ROW + 0.35))
     ys = {}
     for row, (name, _) in enumerate(TREE):
@@ -69,8 +69,8 @@ def readers() -> Figure:
     return figure
 
 
-def installed() -> Figure:
-    """Return the files that go from src to install, each with the line of setup.py or setup.cfg that installs it."""
+def installed_files() -> Figure:
+    """Return a figure of the files that go from src to install, and what installs them in setup.py or setup.cfg."""
     figure, ax = _canvas(9.4, 3.6, (0.0, 20.0), (-0.5, 6.9 * 0.72))
     top = 6.2 * 0.72
     for x, text in ((0.2, "in src/square_dance"), (7.3, "is sent by"), (12.1, "to install/square_dance")):
@@ -111,7 +111,7 @@ def main(folder: Path = FOLDER) -> None:
     """Write each figure as SVG. The same code writes the same bytes."""
     folder.mkdir(parents=True, exist_ok=True)
     with matplotlib.rc_context(dict(STYLE)):
-        for name, draw in (("readers", readers), ("installed", installed)):
+        for name, draw in (("readers", readers), ("installed", installed_files)):
             draw().savefig(folder / f"{name}.svg", metadata={"Date": None, "Creator": None})
 
 

@@ -22,7 +22,7 @@ WALLS = (((0.72, -0.62), (0.72, 0.38)), ((-0.5, 0.62), (0.45, 0.62)))
 
 
 def sector() -> Figure:
-    """Return the forward sector seen from above, with the beams in it and the walls that count."""
+    """Return a figure of the forward sector seen from above, with the beams in it and the walls that count."""
     figure = Figure(figsize=(7.6, 4.82), facecolor=LIGHT.paper)
     ax = figure.add_axes((0.01, 0.01, 0.98, 0.98))
     ax.set(xlim=(-1.72, 2.0), ylim=(-1.18, 1.18), aspect="equal")
@@ -45,7 +45,7 @@ def sector() -> Figure:
 
 
 def _beam(ax: Axes, bearing: float) -> None:
-    """Draw one beam to the first wall, or at full length. Beams that count are drawn more strongly."""
+    """Draw one beam, up to the first wall or at full length. Beams that count are drawn more strongly."""
     reach = min([1.0, *(r for r in (_range(wall, bearing) for wall in WALLS) if r is not None)])
     counts = abs(math.remainder(bearing, math.tau)) <= math.radians(HALF_SECTOR) + 1e-9
     colour, alpha = (LIGHT.hit, 1.0) if counts else (LIGHT.muted, 0.35)

@@ -17,7 +17,7 @@ CLIENT, SERVER = 0.0, 6.0  # the positions of the two lifelines
 
 
 def generation() -> Figure:
-    """Return the steps from a message definition to a Python class and its DDS type support."""
+    """Return a figure of the steps from a message definition to a Python class and its DDS type support."""
     figure, ax = _canvas(9.0, 2.5)
     _box(ax, 0.0, 0.0, 2.3, "RobotStatus.msg", "a text", LIGHT.robot)
     _box(ax, 3.4, 0.0, 2.6, "rosidl generators", "CMake calls them\nin colcon build", LIGHT.muted)
@@ -31,7 +31,7 @@ def generation() -> Figure:
 
 
 def action() -> Figure:
-    """Return the messages between the client and the server of an action, from top to bottom."""
+    """Return a figure of the messages between the client and the server of an action, from top to bottom."""
     figure, ax = _canvas(7.6, 4.6)
     for x, name in ((CLIENT, "client"), (SERVER, "server")):
         ax.text(x, 0.55, name, ha="center", color=LIGHT.ink, fontsize=11, weight="bold")

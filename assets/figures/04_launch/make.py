@@ -17,7 +17,7 @@ MONO = "DejaVu Sans Mono"
 
 
 def groups() -> Figure:
-    """Return two robots from one launch file: the namespace of each group, and the topic that both share."""
+    """Return a figure of two robots from one launch file: each group's namespace, and the topic that they share."""
     figure = Figure(figsize=(8.6, 3.5), facecolor=LIGHT.paper)
     ax = figure.add_axes((0.01, 0.01, 0.98, 0.98))
     ax.set(xlim=(0, 8.6), ylim=(0, 3.5))

@@ -13,7 +13,7 @@ from matplotlib.patches import FancyBboxPatch
 from sim.view.theme import LIGHT, STYLE
 
 FOLDER = Path(__file__).parents[3] / "chapters" / "05_parameters" / "figures"
-BOX, HEIGHT, STEP = 1.62, 1.0, 2.1  # widths and distance of the boxes' left edges
+BOX, HEIGHT, STEP = 1.62, 1.0, 2.1  # the width and height of a box, and the distance between left edges
 STEPS = (
     ("ROS checks", "declared? type?\nrange? read-only?", LIGHT.wall),
     ("validate", "do the values\nfit together?", LIGHT.robot),
@@ -23,7 +23,7 @@ STEPS = (
 
 
 def request() -> Figure:
-    """Return the steps of a request to set parameters: two may reject it, and two carry it out."""
+    """Return a figure of the steps of a request to set parameters: two may reject it, and two carry it out."""
     figure = Figure(figsize=(8.6, 2.5), facecolor=LIGHT.paper)
     ax = figure.add_axes((0.01, 0.01, 0.98, 0.98))
     ax.set(xlim=(-2.3, 8.0), ylim=(-1.55, 1.45))

@@ -23,7 +23,7 @@ TOP, STEP, HEIGHT = 3.55, 0.95, 0.7
 
 
 def mutation() -> Figure:
-    """Return the idea of mutation testing: the same tests run on the code, and on copies with one fault each."""
+    """Return a figure of mutation testing: the same tests run on the code and on copies with one fault each."""
     figure = Figure(figsize=(8.2, 4.2), facecolor=LIGHT.paper)
     ax = figure.add_axes((0.01, 0.01, 0.98, 0.98))
     ax.set(xlim=(0, 8.2), ylim=(0, 4.2))

@@ -34,7 +34,7 @@ MONITOR = Box("status_monitor", 5.0, -1.15)
 
 
 def graph() -> Figure:
-    """Return the graph of the system: nodes as boxes, topics as arrows."""
+    """Return a figure of the system's graph: nodes as boxes, topics as arrows."""
     figure = Figure(figsize=(8.6, 3.9), facecolor=LIGHT.paper)
     ax = figure.add_axes((0.01, 0.01, 0.98, 0.98))
     ax.set(xlim=(-0.95, 9.65), ylim=(-2.2, 2.4), aspect="equal")

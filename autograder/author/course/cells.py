@@ -1,4 +1,4 @@
-"""Reads the course's metadata of notebooks and cells. `metadata.schema.json` beside this module defines their format.
+"""Reads the `course` metadata of notebooks and cells. `metadata.schema.json` beside this module defines their format.
 
 A cell that writes a file to the student's workspace names the reference file that it copies:
 
@@ -22,20 +22,20 @@ from nbformat import NotebookNode
 from autograder import course_paths
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding
-from autograder.author.course.schema_sentences import broken_schema
+from autograder.author.course.schema_sentences import schema_violations
 from autograder.author.course.solution_markers import mark_functions, mark_lines
 from autograder.probes.given_files import strip_licence
 
 _SCHEMA = json.loads(Path(__file__).with_name("metadata.schema.json").read_text("utf-8"))
 _METADATA = Draft202012Validator(_SCHEMA)
-METADATA_NAME = "`course`"  # in sentences about the whole metadata
+METADATA_NAME = "`course`"  # what error messages call the metadata as a whole
 
 
 @dataclass(frozen=True)
 class CopiedFile:
     """A reference file that a cell copies.
 
-    `hidden_functions`, `hidden_parts` and `hidden_lines` are `hide`, `parts` and `cut` in the metadata.
+    In the metadata, `hidden_functions` is called `hide`, `hidden_parts` is `parts`, and `hidden_lines` is `cut`.
     """
 
     source: PurePosixPath
@@ -45,7 +45,10 @@ class CopiedFile:
     hidden_parts: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def expected_text(self) -> str:
-        """Return the source that the cell must have. Raises CourseError if the reference lacks a part of it."""
+        """Return the text that the cell must contain.
+
+        Raises CourseError if the reference lacks the file, or a function or line that the metadata name.
+        """
         text = strip_licence(read_solution(self.source))
         try:
             if self.hidden_functions:
@@ -69,7 +72,7 @@ def copied_file(cell: NotebookNode) -> CopiedFile | None:
 
 
 def given_files(notebook: NotebookNode) -> dict[PurePosixPath, PurePosixPath]:
-    """Return the chapter's copies of reference files, as a mapping from target to source."""
+    """Return the source of each reference file that is copied to the chapter's folder, by its target."""
     pairs = metadata(notebook).get("given", {})
     return {PurePosixPath(target): PurePosixPath(source) for target, source in pairs.items()}
 
@@ -95,18 +98,18 @@ def is_solution(cell: NotebookNode) -> bool:
 
 
 def metadata(node: NotebookNode) -> Mapping[str, Any]:
-    """Return the `course` metadata of a cell or notebook. Raises CourseError if they do not match the schema."""
+    """Return the `course` metadata of a cell or notebook. Raises CourseError if the metadata violate the schema."""
     course: Mapping[str, Any] = node.metadata.get("course", {})
     if not _METADATA.is_valid(course):
-        problems = "; ".join(sentence for _, sentence in broken_schema(course, _SCHEMA, METADATA_NAME))
+        problems = "; ".join(sentence for _, sentence in schema_violations(course, _SCHEMA, METADATA_NAME))
         raise CourseError(f"the metadata are invalid: {problems}")
     return course
 
 
-def broken_metadata(name: str, notebook: NotebookNode) -> Iterator[Finding]:
-    """Yield the problems in the `course` metadata of a notebook and its cells, with `name` as the notebook's name."""
+def metadata_findings(name: str, notebook: NotebookNode) -> Iterator[Finding]:
+    """Yield the problems in the `course` metadata of a notebook, which findings call `name`, and of its cells."""
     for cell, node in ((None, notebook), *((cell.id, cell) for cell in notebook.cells)):
-        for _, sentence in broken_schema(node.metadata.get("course", {}), _SCHEMA, METADATA_NAME):
+        for _, sentence in schema_violations(node.metadata.get("course", {}), _SCHEMA, METADATA_NAME):
             yield Finding(name, cell, f"the metadata are invalid: {sentence}")
 
 

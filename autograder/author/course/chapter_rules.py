@@ -1,4 +1,4 @@
-"""Applies all rules to a chapter at once, so that a mistake in one file does not hide one in another.
+"""Applies all rules to a chapter at once, so that a mistake in one file does not hide a mistake in another.
 
 Nothing is graded. All readable files are examined, even if the suites cannot be imported.
 """
@@ -15,13 +15,13 @@ from pathlib import Path
 from nbformat import NotebookNode
 
 from autograder import course_paths
-from autograder.author.course.cells import broken_metadata, is_graded
-from autograder.author.course.contract_rules import broken_cells, broken_coverage
+from autograder.author.course.cells import is_graded, metadata_findings
+from autograder.author.course.contract_rules import cells_findings, coverage_findings
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding, display_path
-from autograder.author.course.mutant_rules import broken_mutants, unproven_checks
-from autograder.author.course.notebook_rules import broken_rules
-from autograder.author.course.reference_rules import broken_packages, broken_python, broken_variants
+from autograder.author.course.mutant_rules import mutants_findings, unproven_checks
+from autograder.author.course.notebook_rules import rules_findings
+from autograder.author.course.reference_rules import packages_findings, python_findings, variants_findings
 from autograder.author.course.suite_rules import read_suite
 from autograder.author.course.sync import Chapter, find_outdated
 from autograder.author.course.tables import titles_of
@@ -34,13 +34,13 @@ SUITE_KINDS = (suites.VISIBLE, suites.HIDDEN)
 
 @dataclass(frozen=True)
 class ParsedChecks:
-    """The checks of a chapter and all related files.
+    """The checks of a chapter, as read from their files and the files beside them.
 
     Attributes:
         findings: the problems in these files.
         checks: the visible and the hidden checks, or None if they cannot be imported.
         points: the points of each group of hidden checks, or None if they cannot be imported.
-        locations: file and line of each check, by `VISIBILITY ID`.
+        locations: the file and line of each check; the keys have the form `VISIBILITY ID`.
     """
 
     findings: tuple[Finding, ...]
@@ -51,10 +51,10 @@ class ParsedChecks:
 
 @dataclass(frozen=True)
 class ParsedChapter:
-    """A chapter that was read, with all its problems.
+    """A chapter as read from its files.
 
     Attributes:
-        findings: its problems.
+        findings: all its problems.
         notebook: its notebook, or None if it cannot be read or has invalid metadata.
         hidden: its hidden checks, or None if they cannot be imported.
     """
@@ -69,59 +69,65 @@ def read_chapter(chapter: Chapter) -> ParsedChapter:
     notebook, findings = _read_notebook(chapter)
     folder = course_paths.CHECKS / f"ch{chapter.assignment}"
     has_checks = (folder / suites.HIDDEN).is_dir() or (notebook is not None and any(map(is_graded, notebook.cells)))
-    parsed = read_checks(chapter.assignment) if has_checks else ParsedChecks((), (), None, {})
+    parsed_checks = read_checks(chapter.assignment) if has_checks else ParsedChecks((), (), None, {})
     name = chapter.notebook_path.name
     if notebook is not None:
         text = chapter.notebook_path.read_text(encoding="utf-8")
-        invalid_metadata = [*broken_metadata(name, notebook)]
+        invalid_metadata = [*metadata_findings(name, notebook)]
         if invalid_metadata:
-            findings = [*invalid_metadata, *broken_rules(name, notebook)]
+            findings = [*invalid_metadata, *rules_findings(name, notebook)]
         else:
-            findings = _broken_notebook(chapter, notebook, parsed)
+            findings = _notebook_findings(chapter, notebook, parsed_checks)
         findings = [with_line(finding, text) if finding.file == name else finding for finding in findings]
         notebook = None if invalid_metadata else notebook
     path = display_path(chapter.notebook_path)
     findings = [replace(finding, file=path) if finding.file == name else finding for finding in findings]
-    hidden = None if parsed.checks is None else tuple(c for c in parsed.checks if c.visibility is Visibility.HIDDEN)
+    hidden = (
+        None
+        if parsed_checks.checks is None
+        else tuple(c for c in parsed_checks.checks if c.visibility is Visibility.HIDDEN)
+    )
     if hidden:
-        unproven = unproven_checks(folder, [check.id for check in hidden])
-        findings = [*unproven, *_outdated_titles(chapter.assignment), *findings]
-    return ParsedChapter((*parsed.findings, *findings), notebook, hidden)
+        unproven_findings = unproven_checks(folder, [check.id for check in hidden])
+        findings = [*unproven_findings, *_outdated_titles(chapter.assignment), *findings]
+    return ParsedChapter((*parsed_checks.findings, *findings), notebook, hidden)
 
 
 def read_checks(assignment: str) -> ParsedChecks:
     """Read the checks of a chapter, the mutants and variants beside them, and the packages that they grade."""
     folder = course_paths.CHECKS / f"ch{assignment}"
-    parsed = {kind: read_suite(assignment, kind) for kind in SUITE_KINDS}
-    findings = [finding for suite in parsed.values() for finding in suite.findings]
-    findings += broken_python(folder)
-    locations = {f"{kind} {id}": location for kind, suite in parsed.items() for id, location in suite.locations.items()}
+    parsed_suites = {kind: read_suite(assignment, kind) for kind in SUITE_KINDS}
+    findings = [finding for suite in parsed_suites.values() for finding in suite.findings]
+    findings += python_findings(folder)
+    locations = {
+        f"{kind} {id}": location for kind, suite in parsed_suites.items() for id, location in suite.locations.items()
+    }
     checks, points = None, None
     try:
         hidden, visible = suites.hidden(assignment), suites.visible(assignment)
         checks, points = (*visible.checks, *hidden.checks), hidden.groups
     except Exception as error:  # an author's module may raise anything
         findings += [] if findings else [_import_error(error, folder)]  # earlier findings are more precise
-    hidden_suite = parsed[suites.HIDDEN]
+    hidden_suite = parsed_suites[suites.HIDDEN]
     sources = hidden_suite.sources
     if not all((course_paths.SOLUTIONS / source).is_dir() for source in sources):
         sources = ()  # one of the names is wrong, which was already reported
     ids = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
     if ids is None and hidden_suite.is_complete:
         ids = [*hidden_suite.locations]
-    findings += broken_packages(sources)
-    findings += broken_mutants(folder, ids, sources)
-    findings += broken_variants(folder / "variants", sources)
+    findings += packages_findings(sources)
+    findings += mutants_findings(folder, ids, sources)
+    findings += variants_findings(folder / "variants", sources)
     return ParsedChecks(tuple(findings), checks, points, locations)
 
 
 def require_checks(assignments: Iterable[str]) -> None:
     """Raise a CourseError with all problems of the suites that cannot be imported."""
-    graded = suites.graded_assignments()
-    parsed = [read_checks(name) for name in assignments if name in graded]
+    graded_assignments = suites.graded_assignments()
+    parsed_chapters = [read_checks(name) for name in assignments if name in graded_assignments]
     if problems := [
         str(finding)
-        for chapter_checks in parsed
+        for chapter_checks in parsed_chapters
         if chapter_checks.checks is None
         for finding in chapter_checks.findings
     ]:
@@ -129,14 +135,14 @@ def require_checks(assignments: Iterable[str]) -> None:
 
 
 def _outdated_titles(assignment: str) -> Iterator[Finding]:
-    """Yield a finding if the titles of hidden checks are out of date. Students with full marks read them."""
+    """Yield a finding if the titles of the hidden checks, which are shown to students, are out of date."""
     path = course_paths.hidden_titles(assignment)
     if not path.is_file() or path.read_text(encoding="utf-8") != titles_of(assignment):
         yield Finding(display_path(path), None, "is out of date: run `autograder course tables`", 1)
 
 
 def _import_error(error: Exception, folder: Path) -> Finding:
-    """Return a finding for an exception of a suite, at the last line of its traceback that is in the chapter."""
+    """Return a finding for an exception that a suite raised, at the innermost line of the chapter's own code."""
     frames = [
         frame for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename).is_relative_to(folder)
     ]
@@ -160,23 +166,27 @@ def _read_notebook(chapter: Chapter) -> tuple[NotebookNode | None, list[Finding]
         return None, [Finding(name, None, message.removeprefix(f"{name} ").removeprefix(f"{name}: "), line)]
 
 
-def _broken_notebook(chapter: Chapter, notebook: NotebookNode, parsed: ParsedChecks) -> list[Finding]:
+def _notebook_findings(chapter: Chapter, notebook: NotebookNode, parsed_checks: ParsedChecks) -> list[Finding]:
     """Return the problems in a notebook. Rules that need its checks are skipped if the checks are invalid."""
     if not notebook.cells:
-        return broken_rules(chapter.notebook_path.name, notebook)
+        return rules_findings(chapter.notebook_path.name, notebook)
     name = chapter.notebook_path.name
     rules: Sequence[Callable[[], Iterable[Finding]]] = (
-        lambda: find_outdated(chapter, notebook, parsed.points),
-        lambda: broken_rules(name, notebook),
+        lambda: find_outdated(chapter, notebook, parsed_checks.points),
+        lambda: rules_findings(name, notebook),
         lambda: outdated_time_sentence(name, notebook),
-        lambda: broken_cells(name, notebook),
-        lambda: () if not parsed.checks else broken_coverage(name, notebook, parsed.checks, parsed.locations),
+        lambda: cells_findings(name, notebook),
+        lambda: (
+            ()
+            if not parsed_checks.checks
+            else coverage_findings(name, notebook, parsed_checks.checks, parsed_checks.locations)
+        ),
     )
-    return [finding for rule in rules for finding in _apply(name, rule)]
+    return [finding for rule in rules for finding in _apply_rule(name, rule)]
 
 
-def _apply(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Finding]:
-    """Yield the findings of a rule, including nbgrader's own errors for cells that it cannot release."""
+def _apply_rule(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Finding]:
+    """Yield the findings of a rule. An error of nbgrader about a cell that it cannot release becomes a finding."""
     try:
         yield from rule()
     except (CourseError, RuntimeError) as error:
@@ -184,7 +194,7 @@ def _apply(name: str, rule: Callable[[], Iterable[Finding]]) -> Iterator[Finding
 
 
 def with_line(finding: Finding, text: str) -> Finding:
-    """Add the line to a finding in a notebook: that of a name in its message, of its cell, or the first line."""
+    """Add a line to a finding in a notebook: that of a name in its message, else that of its cell, else the first."""
     if finding.line is not None:
         return finding
     lines = text.splitlines()

@@ -1,7 +1,7 @@
 """The rules for a chapter's requirements: the cell that names a requirement contains it, and a check covers it.
 
-A cell that names requirements must name all of them. Each table row, each bullet, and the docstring of each function
-that the student writes must contain a requirement or a text in `explains`.
+A cell that names requirements must name every one that it contains. Each table row, each bullet, and the docstring of
+each function that the student writes must contain a requirement or a text in `explains`.
 """
 
 from __future__ import annotations
@@ -19,82 +19,85 @@ from autograder.suite.contract import requirements
 from autograder.suite.quotation import quote
 
 
-def broken_cells(name: str, notebook: NotebookNode) -> Iterator[Finding]:
-    """Yield the problems with the requirements of a notebook's cells, with `name` as the notebook's name."""
+def cells_findings(name: str, notebook: NotebookNode) -> Iterator[Finding]:
+    """Yield the problems with the requirements in the cells of a notebook, which findings call `name`."""
     for cell in in_form(notebook, Form.RELEASED).cells:
-        yield from (Finding(name, cell.id, message) for message in _broken_cell(cell))
+        yield from (Finding(name, cell.id, message) for message in _cell_findings(cell))
 
 
-def broken_coverage(
+def coverage_findings(
     name: str, notebook: NotebookNode, checks: Sequence[Check], locations: Mapping[str, tuple[str, int]]
 ) -> Iterator[Finding]:
-    """Yield the requirements of a notebook without a check, and the checks of its chapter without a requirement.
+    """Yield the requirements that no check covers, and the checks that cover no requirement of the notebook.
 
-    `locations` maps `VISIBILITY ID` of a check to its file and line. A check without one is attributed to the notebook.
+    `locations` maps `VISIBILITY ID` of a check to its file and line. If a check has no location, the finding names the
+    notebook.
     """
-    known = requirements(notebook.cells)
-    covered = {name for check in checks for name in check.covers}
-    for requirement in known.values():
-        if not requirement.unchecked and requirement.id not in covered:
+    known_requirements = requirements(notebook.cells)
+    covered_requirements = {name for check in checks for name in check.covers}
+    for requirement in known_requirements.values():
+        if not requirement.unchecked and requirement.id not in covered_requirements:
             yield Finding(name, None, f"no check covers the requirement {requirement.id!r}")
-        if requirement.unchecked and requirement.id in covered:
+        if requirement.unchecked and requirement.id in covered_requirements:
             message = f"the requirement {requirement.id!r} is marked as unchecked, but a check covers it"
             yield Finding(name, None, message)
     for check in checks:
-        unknown = ", ".join(repr(requirement_id) for requirement_id in check.covers if requirement_id not in known)
-        if unknown or not check.covers:
-            message = f"covers {unknown}, which no cell names" if unknown else "covers no requirement"
+        unknown_ids = ", ".join(
+            repr(requirement_id) for requirement_id in check.covers if requirement_id not in known_requirements
+        )
+        if unknown_ids or not check.covers:
+            message = f"covers {unknown_ids}, which no cell names" if unknown_ids else "covers no requirement"
             file, line = locations.get(f"{check.visibility.value} {check.id}", (name, None))
             yield Finding(file, None, f"the {check.visibility.value} check {check.id!r} {message}", line)
 
 
-def _broken_cell(cell: NotebookNode) -> Iterator[str]:
+def _cell_findings(cell: NotebookNode) -> Iterator[str]:
     """Yield the problems with the requirements of a released cell."""
     course = metadata(cell)
     contract, explains = course.get("contract", {}), course.get("explains", [])
     quotes = {name: [texts] if isinstance(texts, str) else texts for name, texts in contract.items()}
-    released_text = _words(cell.source)
+    released_text = _normalize_spaces(cell.source)
     for name, text in [(name, text) for name, texts in quotes.items() for text in texts] + [
         ("explains", text) for text in explains
     ]:
-        if _words(text) not in released_text:
+        if _normalize_spaces(text) not in released_text:
             yield f"{name!r}: its released text does not contain the sentence {text!r}"
         elif quote(cell, text) is None:
             yield f"{name!r}: {text!r} is not a row, a sentence or part of one in the released text"
     for name in course.get("unchecked", {}):
         if name not in quotes:
             yield f"{name!r} is marked as unchecked, but is not a requirement of the cell"
-    texts = [_words(text) for group in (*quotes.values(), explains) for text in group]
-    hidden = course.get("hide", [])
-    for piece in _pieces(cell, hidden) if contract or hidden else ():
+    texts = [_normalize_spaces(text) for group in (*quotes.values(), explains) for text in group]
+    hidden_functions = course.get("hide", [])
+    for piece in _pieces(cell, hidden_functions) if contract or hidden_functions else ():
         if not any(text in piece for text in texts):
             yield f"neither `contract` nor `explains` names a sentence of {piece!r}"
 
 
-def _pieces(cell: NotebookNode, hidden: Sequence[str]) -> Iterator[str]:
+def _pieces(cell: NotebookNode, hidden_functions: Sequence[str]) -> Iterator[str]:
     """Yield the rows and bullets of a Markdown cell, and the docstrings of the functions that a student writes."""
     if cell.cell_type == "code":
-        functions = {name.rpartition(".")[2] for name in hidden}
+        functions = {name.rpartition(".")[2] for name in hidden_functions}
         try:
             tree = ast.parse(cell.source.partition("\n")[2]) if functions else ast.Module([], [])
         except SyntaxError:  # the cell differs from the reference, which another rule reports
             return
         for node in ast.walk(tree):
             if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name in functions:
-                yield _words(ast.get_docstring(node) or "")
+                yield _normalize_spaces(ast.get_docstring(node) or "")
         return
     pieces: list[list[str]] = []
     lines = cell.source.splitlines()
-    for line, following in zip(lines, [*lines[1:], ""], strict=True):
+    for line, next_line in zip(lines, [*lines[1:], ""], strict=True):
         is_row = line.startswith("|") and not _is_delimiter_row(line)
-        if line.startswith("- ") or (is_row and not _is_delimiter_row(following)):
+        if line.startswith("- ") or (is_row and not _is_delimiter_row(next_line)):
             pieces.append([line])
         elif line.startswith("  ") and pieces:
             pieces[-1].append(line)
-    yield from (_words(" ".join(piece)) for piece in pieces)
+    yield from (_normalize_spaces(" ".join(piece)) for piece in pieces)
 
 
-def _words(text: str) -> str:
+def _normalize_spaces(text: str) -> str:
     return " ".join(text.split())
 
 

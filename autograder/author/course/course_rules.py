@@ -16,22 +16,22 @@ from autograder.author.course.yaml_files import read_yaml
 from sim import WorldError, load_world
 
 
-def broken_course_file() -> tuple[Finding, ...]:
+def course_file_findings() -> tuple[Finding, ...]:
     """Return the problems in the current `course.yaml`. Reading any other part of the course requires this file."""
     root = Path(os.environ.get(course_paths.COURSE_VARIABLE) or course_paths.ROOT)
     path = root / course_paths.COURSE_FILE
     return read_yaml(path, label=str(path)).findings if path.is_file() else ()
 
 
-def broken_course(parsed: Mapping[str, ParsedChapter], *, whole: bool) -> list[Finding]:
-    """Return the problems of the course outside of its chapters.
+def course_findings(parsed_chapters: Mapping[str, ParsedChapter], *, whole: bool) -> list[Finding]:
+    """Return the problems of the course outside its chapters.
 
     Args:
-        parsed: chapters by their names.
-        whole: whether these are all chapters. Rules that need all of them are skipped otherwise.
+        parsed_chapters: the parsed chapters, by name.
+        whole: whether these are all chapters of the course. If not, rules that need all chapters are skipped.
     """
-    findings = list(_broken_coverage(parsed, whole))
-    return [*_misnamed_folders(), *_broken_worlds(), *findings] if whole else findings
+    findings = list(_coverage_findings(parsed_chapters, whole))
+    return [*_misnamed_folders(), *_worlds_findings(), *findings] if whole else findings
 
 
 def _misnamed_folders() -> Iterator[Finding]:
@@ -40,8 +40,8 @@ def _misnamed_folders() -> Iterator[Finding]:
     for folder in sorted(
         path for path in course_paths.CHAPTERS.glob("*") if path.is_dir() and path.name[:1] not in "._"
     ):
-        if folder.name not in assignments and (notebooks := sorted(path.name for path in folder.glob("*.ipynb"))):
-            message = f"is not a chapter: it has no {folder.name}.ipynb, only {', '.join(notebooks)}"
+        if folder.name not in assignments and (notebook_names := sorted(path.name for path in folder.glob("*.ipynb"))):
+            message = f"is not a chapter: it has no {folder.name}.ipynb, only {', '.join(notebook_names)}"
             yield Finding(display_path(folder), None, message)
     for folder in sorted(path for path in course_paths.CHECKS.glob("ch*") if path.is_dir()):
         name = folder.name.removeprefix("ch")
@@ -49,16 +49,16 @@ def _misnamed_folders() -> Iterator[Finding]:
             yield Finding(display_path(folder), None, f"contains checks of {name!r}, but this chapter does not exist")
 
 
-def _broken_worlds() -> Iterator[Finding]:
+def _worlds_findings() -> Iterator[Finding]:
     for path in sorted(course_paths.WORLDS.glob("*.yaml")) if course_paths.WORLDS.is_dir() else ():
         try:
-            if "image:" not in path.read_text(encoding="utf-8"):  # a map for map_server
+            if "image:" not in path.read_text(encoding="utf-8"):  # otherwise it is a map for map_server
                 load_world(path)
         except WorldError as error:
             yield Finding(display_path(path), None, f"{error.problem}. {error.remedy}", error.line)
 
 
-def _broken_coverage(parsed: Mapping[str, ParsedChapter], whole: bool) -> Iterator[Finding]:
+def _coverage_findings(parsed_chapters: Mapping[str, ParsedChapter], whole: bool) -> Iterator[Finding]:
     """Yield the differences between the syllabus and the readable chapters."""
     path = course_paths.course().root / course_paths.course().syllabus
     if not path.is_file():
@@ -68,20 +68,20 @@ def _broken_coverage(parsed: Mapping[str, ParsedChapter], whole: bool) -> Iterat
     yield from file.findings
     if file.findings:
         return
-    readable = [
+    readable_chapters = [
         (name, chapter.notebook, chapter.hidden)
-        for name, chapter in parsed.items()
+        for name, chapter in parsed_chapters.items()
         if chapter.notebook is not None and chapter.hidden is not None
     ]
-    coverage = find_coverage(Syllabus.read(path), readable)
-    complete = whole and len(readable) == len(parsed)
+    coverage = find_coverage(Syllabus.read(path), readable_chapters)
+    is_complete = whole and len(readable_chapters) == len(parsed_chapters)
     lines = {key_path[-1]: line for key_path, line in file.lines.items() if len(key_path) == 2}
     for finding in coverage.findings:
         if finding.file != course_paths.course().syllabus:
             chapter = Chapter(course_paths.CHAPTERS / finding.file.removesuffix(".ipynb"))
             text = chapter.notebook_path.read_text(encoding="utf-8")
             yield replace(with_line(finding, text), file=display_path(chapter.notebook_path))
-        elif complete:
+        elif is_complete:
             yield replace(
                 finding, line=next((number for key, number in lines.items() if repr(key) in finding.message), 1)
             )

@@ -24,8 +24,8 @@ from autograder.author.course.sync import Chapter
 from autograder.plain_text import clean
 from autograder.ros.domains import Domain
 
-# Run before the first cell instead of being set in the environment, because the notebook is not responsible for
-# warnings of Jupyter's start-up or of the tools that a cell calls (colcon, CMake).
+# Code that runs before the first cell. An environment variable would also turn warnings into errors when Jupyter
+# starts, and in the tools that a cell calls (colcon, CMake), for which the notebook is not responsible.
 STRICT = """import warnings
 warnings.simplefilter('error')
 # ipykernel itself emits this warning when it shuts down. As an error, it would prevent the kernel from ending.
@@ -59,16 +59,16 @@ def run_notebook(
 ) -> Execution:
     """Execute a chapter's notebook in a separate ROS domain, without changing the chapter's folder.
 
-    A cell may take `timeout` seconds. The executed notebook is saved to `report`, and `ws/src` to the folder
-    `packages`.
+    A cell may take `timeout` seconds. The executed notebook is written to `report`, and `ws/src` is copied to the
+    folder `packages`.
     """
     notebook = in_form(chapter.read(), form)
-    started = time.monotonic()
+    start = time.monotonic()
     with working_copy(chapter.folder) as folder, Domain() as domain:
         failure = execute(notebook, folder, timeout, domain.number)
         if packages is not None and (folder / "ws" / "src").is_dir():
             shutil.copytree(folder / "ws" / "src", packages, ignore=course_paths.NOT_COPIED, dirs_exist_ok=True)
-    seconds = time.monotonic() - started
+    seconds = time.monotonic() - start
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)
         nbformat.write(notebook, report)

@@ -15,9 +15,9 @@ class Finding:
 
     Attributes:
         file: the name of the notebook, or the path of another file, relative to the course's folder.
-        cell: the id of the notebook's cell, or None if it does not concern a single cell.
+        cell: the id of the notebook's cell, or None if the problem does not concern a single cell.
         message: the problem and the fix.
-        line: the line of the file, from 1, or None if it does not concern a single line.
+        line: the line of the file, from 1, or None if the problem does not concern a single line.
     """
 
     file: str
@@ -32,10 +32,10 @@ class Finding:
 
 
 def display_path(path: Path) -> str:
-    """Return a file's path for findings: relative to the course's folder, if it is inside."""
+    """Return a path as findings show it: relative to the course's folder if it is inside that folder."""
     root = course_paths.course().root
     return str(path.relative_to(root) if path.is_relative_to(root) else path)
 
 
-# A finding with a function that fixes it in place, or None if the author has to fix it.
+# A finding, and a function that fixes it in place (None if the author has to fix it).
 Difference = tuple[Finding, Callable[[], None] | None]

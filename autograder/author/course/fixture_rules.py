@@ -1,6 +1,6 @@
 """The rule for the arguments of checks: each must be a fixture of the chapter, of the grader, or of pytest.
 
-pytest itself only reports an undefined fixture when a submission is graded.
+pytest itself reports an undefined fixture only when a submission is graded.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from autograder.author.course.findings import Finding
 from autograder.author.course.python_files import Function, PythonFile, declaration, decorators, literal, read_python
 from autograder.author.course.schema_sentences import suggestion
 
-GRADER_FIXTURES = ("workspace", "builds", "seed", "draw", "artifacts")  # of `autograder.grade.plugin`
+GRADER_FIXTURES = ("workspace", "builds", "seed", "draw", "artifacts")  # see `autograder.grade.plugin`
 PYTEST_FIXTURES = ("request", "tmp_path", "tmp_path_factory", "monkeypatch", "capsys", "capfd", "caplog", "recwarn")
 
 
@@ -25,17 +25,17 @@ def unknown_fixtures(folder: Path, modules: Iterable[PythonFile]) -> Iterator[Fi
         modules: the modules of the suite.
     """
     conftests = [path for path in (folder.parent / "conftest.py", folder / "conftest.py") if path.is_file()]
-    shared = {name for path in conftests for name in _fixtures(read_python(path))}
+    shared_fixtures = {name for path in conftests for name in _fixtures(read_python(path))}
     for module in modules:
-        known = [*shared, *_fixtures(module), *GRADER_FIXTURES]
+        known_fixtures = [*shared_fixtures, *_fixtures(module), *GRADER_FIXTURES]
         for function in module.functions():
-            takes_row = "check_each_row" in decorators(function)  # as its first argument
+            takes_row = "check_each_row" in decorators(function)  # the row is its first argument
             if not (declaration(function) or takes_row):
                 continue
             for argument in [*function.args.args, *function.args.kwonlyargs][1 if takes_row else 0 :]:
-                if argument.arg not in (*known, *PYTEST_FIXTURES, *_parameters(function)):
+                if argument.arg not in (*known_fixtures, *PYTEST_FIXTURES, *_parameters(function)):
                     message = f"`{function.name}` uses the unknown fixture `{argument.arg}`: " + suggestion(
-                        argument.arg, known
+                        argument.arg, known_fixtures
                     )
                     yield module.finding(argument, message)
 
@@ -43,8 +43,8 @@ def unknown_fixtures(folder: Path, modules: Iterable[PythonFile]) -> Iterator[Fi
 def _fixtures(file: PythonFile) -> list[str]:
     """Return the names of the fixtures that a file defines, and of its imports, which may be fixtures."""
     imports = (node for node in ast.walk(file.tree) if isinstance(node, ast.ImportFrom))
-    imported = [alias.asname or alias.name for node in imports for alias in node.names]
-    return [function.name for function in file.functions() if "fixture" in decorators(function)] + imported
+    imported_names = [alias.asname or alias.name for node in imports for alias in node.names]
+    return [function.name for function in file.functions() if "fixture" in decorators(function)] + imported_names
 
 
 def _parameters(function: Function) -> list[str]:

@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from autograder.author.course.solution_markers import strip_markers
 from autograder.submission.exercise_stubs import CODE_STUB
 
-# nbgrader's settings for each form that it creates.
+# The settings of nbgrader's preprocessors.
 SETTINGS = {
     "ClearSolutions": {"code_stub": {"python": CODE_STUB}},
     # A mark scheme is in the locked cell of its question, where autograding restores it.
@@ -36,9 +36,9 @@ def in_form(notebook: NotebookNode, form: Form) -> NotebookNode:
     if form is Form.SOLVED:
         for cell in result.cells:
             cell.source = strip_markers(cell.source)
-        result = _preprocessed(result, "ClearMarkScheme")
+        result = _preprocess(result, "ClearMarkScheme")
     elif form is Form.RELEASED:
-        result = _preprocessed(
+        result = _preprocess(
             result,
             "LockCells",
             "ClearSolutions",
@@ -51,7 +51,7 @@ def in_form(notebook: NotebookNode, form: Form) -> NotebookNode:
     return result
 
 
-def _preprocessed(notebook: NotebookNode, *steps: str) -> NotebookNode:
+def _preprocess(notebook: NotebookNode, *steps: str) -> NotebookNode:
     # Imported here because nbgrader takes a second to import, and the source form does not need it.
     from nbgrader import preprocessors
     from traitlets.config import Config

@@ -14,7 +14,7 @@ from autograder.author.course.yaml_files import YamlFile, read_yaml
 MUTANTS, SURVIVORS, SNAPSHOT = "mutants.yaml", "survivors.yaml", "mutants.snapshot.yaml"
 
 
-def broken_mutants(folder: Path, checks: Collection[str] | None, sources: Collection[str]) -> Iterator[Finding]:
+def mutants_findings(folder: Path, checks: Collection[str] | None, sources: Collection[str]) -> Iterator[Finding]:
     """Yield the problems in a chapter's mutant files.
 
     Args:
@@ -27,37 +27,39 @@ def broken_mutants(folder: Path, checks: Collection[str] | None, sources: Collec
             yield from read_yaml(folder / name).findings
     file = _read_mutants(folder)
     yield from file.findings
-    seen: set[str] = set()
+    ids: set[str] = set()
     for path, entry in _entries(file):
-        if (id := str(entry.get("id"))) in seen:
+        if (id := str(entry.get("id"))) in ids:
             yield file.finding((*path, "id"), f"two mutants are called `{id}`")
-        seen.add(id)
+        ids.add(id)
         check = str(entry.get("check"))
         if checks is not None and "check" in entry and check not in checks:
             message = f"the hidden suite has no check `{check}`: {suggestion(check, checks)}"
             yield file.finding((*path, "check"), message)
-        yield from _broken_edits(file, path, entry, sources)
+        yield from _edits_findings(file, path, entry, sources)
 
 
 def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
-    """Yield a finding for each hidden check without a mutant that was written for it or is recorded to fail it."""
+    """Yield a finding for each hidden check if no mutant was written for it and none is recorded to fail it."""
     file = _read_mutants(folder)
     entries = [entry for _, entry in _entries(file)]
-    proven = {str(entry.get("check")) for entry in entries}
+    proven_checks = {str(entry.get("check")) for entry in entries}
     if (folder / SNAPSHOT).is_file():
         snapshot = read_yaml(folder / SNAPSHOT)
         rows = {} if snapshot.findings else snapshot.data or {}
-        proven |= {check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)}
+        proven_checks |= {
+            check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)
+        }
     for check in checks:
-        if check not in proven:
+        if check not in proven_checks:
             yield file.finding((), f"no mutant fails the check `{check}`: add one with an error that it finds")
 
 
 def _read_mutants(folder: Path) -> YamlFile:
     if (path := folder / MUTANTS).is_file():
         return read_yaml(path)
-    missing = Finding(display_path(path), None, "is missing: it contains flawed versions of the reference", 1)
-    return YamlFile(missing.file, None, {}, (missing,))
+    missing_file = Finding(display_path(path), None, "is missing: it contains flawed versions of the reference", 1)
+    return YamlFile(missing_file.file, None, {}, (missing_file,))
 
 
 def _entries(file: YamlFile) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
@@ -70,11 +72,13 @@ def _entries(file: YamlFile) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
 
 def _recorded_failures(row: Any, checks: Collection[str]) -> Collection[str]:
     """Return the failed checks in a row of the snapshot."""
-    failed = row["fails"] if isinstance(row, dict) else row
-    return checks if failed == "all" else failed
+    failed_checks = row["fails"] if isinstance(row, dict) else row
+    return checks if failed_checks == "all" else failed_checks
 
 
-def _broken_edits(file: YamlFile, path: KeyPath, entry: dict[str, Any], sources: Collection[str]) -> Iterator[Finding]:
+def _edits_findings(
+    file: YamlFile, path: KeyPath, entry: dict[str, Any], sources: Collection[str]
+) -> Iterator[Finding]:
     """Yield the problems in the edits of a mutant. Each edit applies to the result of the previous ones."""
     texts: dict[str, str | None] = {}
     edits = entry.get("edits")

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from autograder import course_paths
-from autograder.author.course.package_names import is_package_name, taken_by
+from autograder.author.course.package_names import is_package_name, owner_of
 from autograder.author.course.sync import Chapter, sync_chapter
 from autograder.author.course.tables import titles_of
 from autograder.author.course.workload import effort, time_sentence
@@ -20,9 +20,10 @@ from autograder.exceptions import UsageError
 
 TEMPLATES = course_paths.ROOT / "assets" / "new"
 NAME = re.compile(r"\d\d_(.+)")
-OBJECTIVES = "objectives:\n"
-NODE = "nearest"
-IMPORTED_CLASSES = {"Node", "LaserScan", "Float32", "ExternalShutdownException"}  # by the reference of a new chapter
+OBJECTIVES = "objectives:\n"  # the line of a syllabus below which its objectives are listed
+NODE = "nearest"  # the default name of a new chapter's node
+# The classes that the reference of a new chapter imports.
+IMPORTED_CLASSES = {"Node", "LaserScan", "Float32", "ExternalShutdownException"}
 
 
 def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple[Path, ...]:
@@ -30,7 +31,7 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
 
     Args:
         assignment: two digits and a name, such as `10_mapping`.
-        package: the name of the students' package, by default the chapter's without its number.
+        package: the name of the students' package; by default the chapter's name without its number.
         node: the name of the package's node, of its executable and of its module.
 
     Raises:
@@ -86,7 +87,7 @@ def write_course(folder: Path) -> None:
 def _require_free(kind: str, name: str, alternative: str) -> None:
     if not is_package_name(name):
         raise UsageError(f"{name!r} is not a {kind} name: use lower-case letters, digits and single underscores")
-    if owner := taken_by(name):
+    if owner := owner_of(name):
         raise UsageError(f"a {kind} cannot be called {name!r}, which is {owner}. Choose another name: {alternative}")
 
 
@@ -97,17 +98,17 @@ def _require_new(*folders: Path) -> None:
 
 
 def _write(template: Path, folder: Path, placeholders: Mapping[str, str]) -> None:
-    """Copy a folder of text files, with placeholders replaced by their values in names and texts."""
+    """Copy a folder of text files, and replace the placeholders in their names and texts by values."""
 
-    def filled(text: str) -> str:
+    def substitute(text: str) -> str:
         for placeholder, value in placeholders.items():
             text = text.replace(placeholder, value)
         return text
 
     for source in sorted(path for path in template.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
-        target = folder / filled(str(source.relative_to(template)))
+        target = folder / substitute(str(source.relative_to(template)))
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(filled(source.read_text(encoding="utf-8")), encoding="utf-8")
+        target.write_text(substitute(source.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def _complete(chapter: Chapter) -> None:

@@ -20,19 +20,19 @@ _IMG = re.compile(r"<img\b[^>]*>", re.IGNORECASE)
 _ALT = re.compile(r"""\balt=(["'])\s*[^"'\s]""", re.IGNORECASE)
 
 
-def broken_rules(name: str, notebook: NotebookNode) -> list[Finding]:
+def rules_findings(name: str, notebook: NotebookNode) -> list[Finding]:
     """Return the rules that a source notebook with this file name breaks."""
     try:
         nbformat.validate(notebook)
     except nbformat.ValidationError as error:
         return [Finding(name, None, f"is not valid nbformat: {error.message}")]
-    problems = [*_notebook(notebook), *_nbgrader(notebook), *_headings(notebook)]
+    problems = [*_notebook_problems(notebook), *_nbgrader_problems(notebook), *_heading_problems(notebook)]
     for cell in notebook.cells:
-        problems += [(cell.id, message) for message in _cell(cell)]
+        problems += [(cell.id, message) for message in _cell_problems(cell)]
     return [Finding(name, cell, message) for cell, message in problems]
 
 
-def _notebook(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
+def _notebook_problems(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
     if (notebook.nbformat, notebook.nbformat_minor) != (4, 5):
         yield None, f"is nbformat {notebook.nbformat}.{notebook.nbformat_minor}; the course uses 4.5, with cell ids"
     kernel = notebook.metadata.get("kernelspec", {})
@@ -40,7 +40,7 @@ def _notebook(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
         yield None, "its kernelspec must be python3, language python, so that it opens anywhere"
 
 
-def _cell(cell: NotebookNode) -> Iterator[str]:
+def _cell_problems(cell: NotebookNode) -> Iterator[str]:
     if cell.cell_type == "code":
         if cell.outputs:
             yield "has outputs; clear them before committing"
@@ -56,7 +56,7 @@ def _cell(cell: NotebookNode) -> Iterator[str]:
                 yield f"the image {tag} has no alternative text"
 
 
-def _headings(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
+def _heading_problems(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
     level = 0
     for cell in notebook.cells:
         if cell.cell_type != "markdown":
@@ -74,7 +74,7 @@ def _headings(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
         yield None, "has no title"
 
 
-def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
+def _nbgrader_problems(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
     from nbgrader.nbgraderformat import SCHEMA_VERSION, MetadataValidator, ValidationError
 
     for cell in notebook.cells:
@@ -97,14 +97,14 @@ def _nbgrader(notebook: NotebookNode) -> Iterator[tuple[str | None, str]]:
         if is_graded(cell) and not is_manually_graded(cell) and (not nbgrader_data.get("locked") or group_name is None):
             yield cell.id, 'a grade cell must be locked and name its group of checks: {"course": {"group": ...}}'
         if is_manually_graded(cell):
-            yield from ((cell.id, message) for message in _manual(cell, group_name))
+            yield from ((cell.id, message) for message in _manual_cell_problems(cell, group_name))
         if MARK_SCHEME in cell.source and not nbgrader_data.get("locked"):
             yield cell.id, "contains a mark scheme but is not locked: lock it, so that autograding can restore it"
         if "BEGIN SOLUTION" in cell.source and not nbgrader_data.get("solution"):
             yield cell.id, "contains a solution but is not marked as a solution cell"
 
 
-def _manual(cell: NotebookNode, group_name: str | None) -> Iterator[str]:
+def _manual_cell_problems(cell: NotebookNode, group_name: str | None) -> Iterator[str]:
     nbgrader_data = cell.metadata.nbgrader
     if nbgrader_data.get("locked"):
         yield "is locked, but students must write in it: unlock it"

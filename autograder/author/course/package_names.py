@@ -32,7 +32,7 @@ def is_package_name(name: str) -> bool:
     return NAME.fullmatch(name) is not None and not keyword.iskeyword(name)
 
 
-def taken_by(name: str) -> str:
+def owner_of(name: str) -> str:
     """Return the owner of a name, such as "a package of ROS", or "" if the name is free."""
     if name in sys.stdlib_module_names:
         return "a module of Python's standard library"

@@ -19,7 +19,7 @@ def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, fl
 
     Findings refer to the notebook by `name`. `points` are the points of each group of its hidden suite.
     """
-    seen: dict[str, None] = {}
+    named_groups: dict[str, None] = {}
     for cell in notebook.cells:
         if not is_graded(cell) or is_manually_graded(cell):
             continue
@@ -27,16 +27,16 @@ def point_differences(name: str, notebook: NotebookNode, points: Mapping[str, fl
         if group_name is None or group_name not in points:
             message = f"names the unknown group {group_name!r}; the suite's groups are {', '.join(points) or 'none'}"
             yield Finding(name, cell.id, message), None
-        elif group_name in seen:
+        elif group_name in named_groups:
             yield Finding(name, cell.id, f"is the second cell of group {group_name!r}"), None
         elif cell_points != points[group_name]:
             message = f"has {cell_points} points, but the checks of {group_name!r} have {points[group_name]:g}"
             set_points = partial(cell.metadata.nbgrader.__setitem__, "points", points[group_name])
             yield Finding(name, cell.id, message), set_points
-        seen.setdefault(str(group_name))
+        named_groups.setdefault(str(group_name))
     for group_name in points:
-        if group_name not in seen:
+        if group_name not in named_groups:
             yield Finding(name, None, f"group {group_name!r} has no grade cell"), None
-    order = [group_name for group_name in points if group_name in seen]
-    if [group_name for group_name in seen if group_name in points] != order:
+    order = [group_name for group_name in points if group_name in named_groups]
+    if [group_name for group_name in named_groups if group_name in points] != order:
         yield Finding(name, None, f"its grade cells are not in the order of the suite: {', '.join(order)}"), None

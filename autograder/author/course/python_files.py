@@ -20,7 +20,7 @@ class PythonFile:
     Attributes:
         label: its path in findings.
         tree: its syntax tree, which is empty if the file cannot be parsed.
-        findings: the reason why it cannot be parsed.
+        findings: the syntax error, if it cannot be parsed.
     """
 
     label: str
@@ -50,7 +50,7 @@ def read_python(path: Path) -> PythonFile:
     label = display_path(path)
     try:
         return PythonFile(label, ast.parse(path.read_bytes(), filename=label))
-    except (SyntaxError, ValueError) as error:  # a ValueError for a null byte
+    except (SyntaxError, ValueError) as error:  # a null byte is a ValueError
         reason, line = getattr(error, "msg", error), getattr(error, "lineno", None) or 1
         return PythonFile(label, findings=(Finding(label, None, f"is not Python: {reason}", line),))
 
@@ -62,7 +62,7 @@ def decorator_name(decorator: ast.expr) -> str:
 
 
 def decorators(function: Function) -> dict[str, ast.expr]:
-    """Return the decorators of a function by their names."""
+    """Return the decorators of a function by name."""
     return {decorator_name(decorator): decorator for decorator in function.decorator_list}
 
 

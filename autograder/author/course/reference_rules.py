@@ -14,23 +14,23 @@ from autograder.author.course.schema_sentences import suggestion
 MANIFEST = "package.xml"
 
 
-def broken_packages(packages: Collection[str]) -> Iterator[Finding]:
+def packages_findings(packages: Collection[str]) -> Iterator[Finding]:
     """Yield the problems in these folders of the reference. A folder without a manifest is not a ROS package."""
     for name in packages:
         folder = course_paths.SOLUTIONS / name
         if (folder / MANIFEST).is_file():
-            yield from _manifest(folder / MANIFEST, name)
+            yield from _manifest_findings(folder / MANIFEST, name)
         for path in sorted(folder.rglob("*.py")):
             yield from read_python(path).findings
 
 
-def broken_python(folder: Path) -> Iterator[Finding]:
-    """Yield a finding for each unparsable Python file of a chapter's checks, except the suites' own files."""
+def python_findings(folder: Path) -> Iterator[Finding]:
+    """Yield a finding for each Python file of a chapter's checks that cannot be parsed, except the suites' modules."""
     for path in sorted([*folder.glob("*.py"), *folder.glob("support/**/*.py"), *folder.glob("*/conftest.py")]):
         yield from read_python(path).findings
 
 
-def broken_variants(folder: Path, packages: Collection[str]) -> Iterator[Finding]:
+def variants_findings(folder: Path, packages: Collection[str]) -> Iterator[Finding]:
     """Yield a finding for each package in a chapter's variants that the suite does not grade."""
     for variant in sorted(path for path in folder.glob("*") if path.is_dir()):
         for package in sorted(path.name for path in variant.iterdir()):
@@ -39,7 +39,7 @@ def broken_variants(folder: Path, packages: Collection[str]) -> Iterator[Finding
                 yield Finding(display_path(variant / package), None, message)
 
 
-def _manifest(path: Path, package: str) -> Iterator[Finding]:
+def _manifest_findings(path: Path, package: str) -> Iterator[Finding]:
     try:
         name = ET.parse(path).getroot().findtext("name")
     except ET.ParseError as error:

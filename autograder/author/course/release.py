@@ -26,42 +26,42 @@ COPIED = ("sim", "autograder", "assets/worlds", "pyproject.toml", "requirements.
 STUDENT_FILES = course_paths.ROOT / "assets" / "students"  # the README and the Makefile of a student release
 # The parts of a chapter's folder of checks that students get.
 STUDENT_CHECKS = frozenset({"__init__.py", "conftest.py", "support", "visible"})
-# The command-line modules that students get: their verbs and the dependencies of these.
+# The modules of `cli` that students get: the commands for students, and what these import.
 STUDENT_CLI = frozenset({"__init__.py", "options.py", "terminal.py", "check.py", "doctor.py", "ros.py", "update.py"})
-# The folders and modules for instructors only.
-WITHHELD = ("author/course", "author/verification", "checking/attacks.py", "grade/cluster", "lms", "report")
+# The folders and modules that only instructors get.
+INSTRUCTOR_PARTS = ("author/course", "author/verification", "checking/attacks.py", "grade/cluster", "lms", "report")
 
 
 def write_release(out: Path, names: tuple[str, ...] = (), newest: str = "") -> list[str]:
     """Write a student release of these chapters (all by default) to the new folder `out`, and return their names.
 
-    Its version is the current time. `newest` is the folder where students' machines find the newest release. Raises
-    UsageError, and writes nothing, if `out` exists or a chapter does not.
+    Its version is the current time. `newest` is the folder where students' machines find the newest release. If `out`
+    exists, or one of the chapters does not, it writes nothing and raises UsageError.
     """
     if out.exists():
         raise UsageError(f"{out} already exists: choose a new folder")
-    selected = chapters(names)
+    selected_chapters = chapters(names)
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as scratch:
         release = Path(scratch) / out.name
         copy_tool(COPIED, release)
-        _withhold(release)
+        _remove_instructor_parts(release)
         copy_course((course_paths.COURSE_FILE, course_paths.course().worlds, *course_paths.course().released), release)
         checks = [path for path in course_paths.CHECKS.glob("ch*/*") if path.name in STUDENT_CHECKS]
         copy_course((str(path.relative_to(course_paths.course().root)) for path in checks), release)
-        for chapter in selected:
+        for chapter in selected_chapters:
             write_released(chapter, release / course_paths.course().chapters / chapter.assignment)
         shutil.copytree(STUDENT_FILES, release, dirs_exist_ok=True)
         readme = (STUDENT_FILES / "README.md").read_text(encoding="utf-8")
-        readme = readme.replace("TITLE", course_paths.course().title).replace("FIRST", selected[0].assignment)
+        readme = readme.replace("TITLE", course_paths.course().title).replace("FIRST", selected_chapters[0].assignment)
         (release / "README.md").write_text(readme, encoding="utf-8")
         write_manifest(release, datetime.now(timezone.utc).isoformat(timespec="seconds"), newest)
         release.rename(out)
-    return [chapter.assignment for chapter in selected]
+    return [chapter.assignment for chapter in selected_chapters]
 
 
 def copy_tool(parts: Iterable[str], folder: Path) -> None:
-    """Copy files and folders of the autograder's repository to `folder`, without any course's checks."""
+    """Copy files and folders of the autograder's repository to `folder`, without the checks of chapters."""
     _copy(course_paths.ROOT, parts, folder)
     for chapter in (folder / "autograder" / "checks").glob("ch*"):
         shutil.rmtree(chapter)
@@ -83,9 +83,9 @@ def _copy(root: Path, parts: Iterable[str], folder: Path) -> None:
             shutil.copy2(source, target)
 
 
-def _withhold(release: Path) -> None:
+def _remove_instructor_parts(release: Path) -> None:
     tool = release / "autograder"
-    for path in (tool / name for name in WITHHELD):
+    for path in (tool / name for name in INSTRUCTOR_PARTS):
         shutil.rmtree(path) if path.is_dir() else path.unlink()
     for module in (tool / "cli").iterdir():
         if module.name not in STUDENT_CLI:

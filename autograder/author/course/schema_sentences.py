@@ -32,17 +32,17 @@ INSTANCE_NAMES = (
 )
 
 
-def broken_schema(data: Any, schema: Mapping[str, Any], whole: str = "the file") -> list[tuple[KeyPath, str]]:
-    """Return the violations of a schema in plain data, each as a key path and a sentence.
+def schema_violations(data: Any, schema: Mapping[str, Any], whole: str = "the file") -> list[tuple[KeyPath, str]]:
+    """Return a key path and a sentence for each part of the data that violates the schema.
 
-    Sentences refer to the whole data as `whole`, and to a part by its key path.
+    Sentences refer to the data as a whole by the text `whole`, and to a part by its key path.
     """
     violations: dict[tuple[KeyPath, str], None] = {}
     for error in sorted(
         Draft202012Validator(schema).iter_errors(data), key=lambda violation: [*map(str, violation.path)]
     ):
         path = tuple(map(str, error.absolute_path))
-        subject = f"`{_formatted(path)}`{_id(data, error)}" if path else whole
+        subject = f"`{_format_path(path)}`{_id_in_brackets(data, error)}" if path else whole
         for extra_path, sentence in _sentences(error, subject):
             violations.setdefault(((*path, *extra_path), sentence))
     return list(violations)
@@ -55,20 +55,20 @@ def file_schema(name: str) -> dict[str, Any]:
     return {"$ref": f"#/$defs/{name}", "$defs": schemas["$defs"]}
 
 
-def suggestion(name: str, known: Iterable[str]) -> str:
+def suggestion(name: str, known_names: Iterable[str]) -> str:
     """Return the end of a sentence about an unknown name: a similar known name, or all known names."""
-    known = list(known)
-    similar = difflib.get_close_matches(name, known, n=1)
-    return f"did you mean `{similar[0]}`?" if similar else f"the known names are {', '.join(known) or 'none'}"
+    known_names = list(known_names)
+    matches = difflib.get_close_matches(name, known_names, n=1)
+    return f"did you mean `{matches[0]}`?" if matches else f"the known names are {', '.join(known_names) or 'none'}"
 
 
 def _sentences(error: Any, subject: str) -> Iterator[tuple[KeyPath, str]]:
     """Yield sentences for an error of jsonschema, which may concern several keys of its `subject`."""
     schema, rule, expected, instance = error.schema, error.validator, error.validator_value, error.instance
     if rule == "additionalProperties" and expected is False:
-        known = list(schema["properties"])
-        for key in (str(each) for each in instance if each not in known):
-            yield (key,), f"{subject} has an unknown key `{key}`: {suggestion(key, known)}"
+        known_keys = list(schema["properties"])
+        for key in (str(entry) for entry in instance if entry not in known_keys):
+            yield (key,), f"{subject} has an unknown key `{key}`: {suggestion(key, known_keys)}"
     elif rule == "required":
         for key in expected:
             if key not in instance:
@@ -89,16 +89,16 @@ def _sentences(error: Any, subject: str) -> Iterator[tuple[KeyPath, str]]:
         yield (), f"{subject}: {schema.get('description', error.message)}"
 
 
-def _formatted(path: KeyPath) -> str:
+def _format_path(path: KeyPath) -> str:
     """Return a key path in readable form: `mutants[2].edits[0].find`."""
     return "".join(f"[{part}]" if part.isdigit() else f".{part}" for part in path).lstrip(".")
 
 
-def _id(data: Any, error: ValidationError) -> str:
+def _id_in_brackets(data: Any, error: ValidationError) -> str:
     """Return the `id` of the innermost enclosing mapping that has one, in brackets, or an empty string."""
-    innermost, part = "", data
+    innermost_id, part = "", data
     for key in error.absolute_path:
         part = part[key]
         if isinstance(part, Mapping) and isinstance(part.get("id"), str):
-            innermost = f" ({part['id']})"
-    return innermost
+            innermost_id = f" ({part['id']})"
+    return innermost_id

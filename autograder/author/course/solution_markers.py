@@ -28,21 +28,23 @@ def mark_functions(text: str, hide: Sequence[str], parts: Mapping[str, tuple[str
     between two lines, which are given as in `mark_lines`. Raises CourseError if one of the bodies cannot be marked.
     """
     parts = parts or {}
-    if unknown := sorted(parts.keys() - set(hide)):
-        raise CourseError(f"`parts` names {', '.join(unknown)}, which `hide` does not name")
+    if unknown_parts := sorted(parts.keys() - set(hide)):
+        raise CourseError(f"`parts` names {', '.join(unknown_parts)}, which `hide` does not name")
     try:
         functions = list(_functions(ast.parse(text)))
     except SyntaxError as error:
         raise CourseError(f"the source does not parse: {error.msg} in line {error.lineno}") from error
     regions = []
     for name in hide:
-        matches = [function for qualified, function in functions if qualified == name]
+        matches = [function for qualified_name, function in functions if qualified_name == name]
         if len(matches) != 1:
-            known = ", ".join(sorted({qualified for qualified, _ in functions})) or "none"
-            raise CourseError(f"function {name!r} occurs {len(matches)} times in the source; its functions: {known}")
+            known_names = ", ".join(sorted({qualified_name for qualified_name, _ in functions})) or "none"
+            raise CourseError(
+                f"function {name!r} occurs {len(matches)} times in the source; its functions: {known_names}"
+            )
         region = _region(name, matches[0])
         regions.append(_part(text, region, *parts[name]) if name in parts else region)
-    return _marked(text, regions)
+    return _insert_markers(text, regions)
 
 
 def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
@@ -52,7 +54,7 @@ def mark_lines(text: str, cuts: Sequence[tuple[str, str]]) -> str:
     or the end of the file. Raises CourseError if one of the regions cannot be marked.
     """
     whole = (0, len(text.splitlines()), 0)
-    return _marked(text, [_part(text, whole, before, after) for before, after in cuts])
+    return _insert_markers(text, [_part(text, whole, before, after) for before, after in cuts])
 
 
 def strip_markers(text: str) -> str:
@@ -60,7 +62,7 @@ def strip_markers(text: str) -> str:
     return "\n".join(line for line in text.split("\n") if line.strip() not in (BEGIN, END))
 
 
-def _marked(text: str, regions: list[tuple[int, int, int]]) -> str:
+def _insert_markers(text: str, regions: list[tuple[int, int, int]]) -> str:
     """Return text with markers around regions: (index of the first line, index after the last, indentation)."""
     if BEGIN in text or END in text:
         raise CourseError("the source contains solution markers: remove them, they belong only in notebooks")
@@ -75,14 +77,14 @@ def _marked(text: str, regions: list[tuple[int, int, int]]) -> str:
 
 
 def _part(text: str, region: tuple[int, int, int], before: str, after: str) -> tuple[int, int, int]:
-    """Return the part of a region between two of its lines, for `_marked`."""
+    """Return the part of a region between two of its lines, in the form that `_insert_markers` takes."""
     start, stop, _ = region
     lines = text.splitlines()[start:stop]
     first, end = _line_index(lines, before, -1) + 1, _line_index(lines, after, len(lines))
-    first_written = next((line for line in lines[first:end] if line.strip()), None)
-    if first_written is None:
+    first_nonempty = next((line for line in lines[first:end] if line.strip()), None)
+    if first_nonempty is None:
         raise CourseError(f"no text to hide between the lines {before!r} and {after!r}")
-    return start + first, start + end, len(first_written) - len(first_written.lstrip())
+    return start + first, start + end, len(first_nonempty) - len(first_nonempty.lstrip())
 
 
 def _line_index(lines: Sequence[str], text: str, default: int) -> int:
@@ -98,16 +100,16 @@ def _line_index(lines: Sequence[str], text: str, default: int) -> int:
 def _functions(node: ast.AST, prefix: str = "") -> Iterator[tuple[str, Function]]:
     for child in ast.iter_child_nodes(node):
         if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-            qualified = prefix + child.name
+            qualified_name = prefix + child.name
             if not isinstance(child, ast.ClassDef):
-                yield qualified, child
-            yield from _functions(child, qualified + ".")
+                yield qualified_name, child
+            yield from _functions(child, qualified_name + ".")
         else:
             yield from _functions(child, prefix)
 
 
 def _region(name: str, function: Function) -> tuple[int, int, int]:
-    """Return the region of a function's body after its docstring, for `_marked`."""
+    """Return the region of a function's body after its docstring, in the form that `_insert_markers` takes."""
     if ast.get_docstring(function, clean=False) is None:
         raise CourseError(f"function {name!r} has no docstring: write one, students see it in place of the body")
     # The region starts right after the docstring, because a comment above the first statement may reveal the answer.

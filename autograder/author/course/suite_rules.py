@@ -30,7 +30,7 @@ from autograder.suite.declaration import PREFIX
 TUPLE_SETTINGS = ("PACKAGES", "MODULES", "GROUPS", "FOLDERS", "READS", "OWN_TESTS")
 SETTINGS = (*TUPLE_SETTINGS, "BUILD_MAY_FAIL")
 REQUIRED_SETTINGS = ("PACKAGES", "MODULES")
-ARGUMENTS = ("points", "group", "covers", "needs", "after", "doc")  # of `check`
+ARGUMENTS = ("points", "group", "covers", "needs", "after", "doc")  # the arguments of `check`
 HELPERS = ("__init__.py", "conftest.py")
 
 
@@ -40,8 +40,8 @@ class ParsedSuite:
 
     Attributes:
         findings: its problems.
-        locations: file and line of each check, by its id.
-        sources: the folders of the reference that it grades, as far as they are known.
+        locations: file and line of each check, by id.
+        sources: the folders of the reference that the suite grades, as far as they are known.
         is_complete: whether `locations` contains every check.
     """
 
@@ -63,19 +63,21 @@ def read_suite(assignment: str, kind: str) -> ParsedSuite:
     files = {path.stem: read_python(path) for path in sorted(folder.glob("*.py")) if path.name not in HELPERS}
     findings = [*init.findings, *(finding for file in files.values() for finding in file.findings)]
     if not init.findings:
-        findings += _broken_settings(init, folder, files)
-    listed = _strings(constants.get("MODULES"))
-    in_order = [name for name in listed if name in files] or list(files)
-    incomplete = [name for name in in_order if files[name].findings or _has_tables(files[name])]
+        findings += _settings_findings(init, folder, files)
+    listed_modules = _strings(constants.get("MODULES"))
+    in_order = [name for name in listed_modules if name in files] or list(files)
+    incomplete_modules = [name for name in in_order if files[name].findings or _has_tables(files[name])]
     locations: dict[str, tuple[str, int]] = {}
     for name in in_order:
-        findings += _broken_checks(files[name], locations, any(map(_has_tables, files.values())))
+        findings += _checks_findings(files[name], locations, any(map(_has_tables, files.values())))
     findings += unknown_fixtures(folder, [files[name] for name in in_order])
     sources = _strings(constants.get("PACKAGES")) + _strings(constants.get("FOLDERS"))
-    return ParsedSuite(tuple(findings), locations, sources, len(in_order) == len(listed) and not incomplete)
+    return ParsedSuite(
+        tuple(findings), locations, sources, len(in_order) == len(listed_modules) and not incomplete_modules
+    )
 
 
-def _broken_settings(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -> Iterator[Finding]:
+def _settings_findings(file: PythonFile, folder: Path, modules: dict[str, PythonFile]) -> Iterator[Finding]:
     """Yield the problems in the `__init__.py` of a suite."""
     values = dict(file.constants())
     for name, value in values.items():
@@ -90,10 +92,10 @@ def _broken_settings(file: PythonFile, folder: Path, modules: dict[str, PythonFi
         elif name == "BUILD_MAY_FAIL" and setting_value not in (True, False):
             yield file.finding(value, "`BUILD_MAY_FAIL` must be True or False")
     yield from (file.finding(None, f"has no `{name}`") for name in REQUIRED_SETTINGS if name not in values)
-    listed, packages, folders, read_paths = (
+    listed_modules, packages, folders, read_paths = (
         _strings(literal(values.get(name))) for name in ("MODULES", "PACKAGES", "FOLDERS", "READS")
     )
-    for name in listed:
+    for name in listed_modules:
         if name not in modules:
             yield file.finding(values["MODULES"], f"`MODULES` names {name!r}, but {name}.py does not exist beside it")
     for name in packages + folders:
@@ -104,19 +106,19 @@ def _broken_settings(file: PythonFile, folder: Path, modules: dict[str, PythonFi
     for name in read_paths:
         if not (course_paths.course().root / name).exists():
             yield file.finding(values["READS"], f"`READS` names {name!r}, but the course has no such file or folder")
-    if listed:
+    if listed_modules:
         for name, module in modules.items():
-            if name not in listed and (first_check := next(_declared(module), None)):
+            if name not in listed_modules and (first_check := next(_declared_checks(module), None)):
                 init = f"{folder.name}/__init__.py"
                 message = f"the checks in this file do not count: `MODULES` in {init} does not name {name!r}"
                 yield module.finding(first_check, message)
 
 
-def _broken_checks(file: PythonFile, locations: dict[str, tuple[str, int]], has_tables: bool) -> Iterator[Finding]:
+def _checks_findings(file: PythonFile, locations: dict[str, tuple[str, int]], has_tables: bool) -> Iterator[Finding]:
     """Yield the problems in a module's declarations of checks, and add the location of each check to `locations`."""
     for node in file.tree.body:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
-            yield from _broken_dependencies(file, node.value, locations, None, has_tables)
+            yield from _dependencies_findings(file, node.value, locations, None, has_tables)
     for function in file.functions():
         call = declaration(function)
         if call is None:
@@ -145,11 +147,11 @@ def _broken_checks(file: PythonFile, locations: dict[str, tuple[str, int]], has_
         if id in locations:
             location = "{}:{}".format(*locations[id])
             yield file.finding(function, f"two checks are called `{id}`: the other one is in {location}")
-        yield from _broken_dependencies(file, call, locations, id, has_tables)
+        yield from _dependencies_findings(file, call, locations, id, has_tables)
         locations.setdefault(id, (file.label, function.lineno))
 
 
-def _broken_dependencies(
+def _dependencies_findings(
     file: PythonFile, call: ast.Call, locations: dict[str, tuple[str, int]], id: str | None, has_tables: bool
 ) -> Iterator[Finding]:
     """Yield a finding for each check that a declaration names but that is not declared before it."""
@@ -168,7 +170,7 @@ def _broken_dependencies(
                     yield file.finding(argument(call, name), message)
 
 
-def _declared(module: PythonFile) -> Iterator[Function]:
+def _declared_checks(module: PythonFile) -> Iterator[Function]:
     """Yield the functions of a module that are checks, or that pytest would treat as checks."""
     for function in module.functions():
         if function.name.startswith(PREFIX) or declaration(function) or "check_each_row" in decorators(function):
@@ -176,7 +178,7 @@ def _declared(module: PythonFile) -> Iterator[Function]:
 
 
 def _has_tables(file: PythonFile) -> bool:
-    """Return whether a module declares checks with the rows of a table, whose names cannot be parsed."""
+    """Return whether a module declares a check for each row of a table. The ids of such checks cannot be parsed."""
     return any("check_each_row" in decorators(function) for function in file.functions())
 
 

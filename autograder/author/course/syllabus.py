@@ -1,6 +1,6 @@
 """The syllabus, and the cells and hidden checks of the course that cover it.
 
-A syllabus is a YAML file. It lists the objectives, sections, examples, steps, questions and errors of a text. The
+A syllabus is a YAML file. It lists the objectives, sections, examples, steps, questions and errors of a textbook. The
 metadata of a cell name the items that it covers (`covers`) and the `errata` that it corrects. The metadata of a
 notebook name the errata that its packages correct. For each objective, they also name the cell with the exercise's
 heading and the groups of hidden checks that test it (`objectives`).
@@ -84,32 +84,32 @@ class SyllabusCoverage:
 def find_coverage(
     syllabus: Syllabus, chapters: Sequence[tuple[str, NotebookNode, Sequence[Check]]]
 ) -> SyllabusCoverage:
-    """Find the coverage by chapters. Each is a tuple of its name, its source notebook and its hidden checks."""
+    """Find what the chapters cover. Each chapter is a tuple of its name, its source notebook and its hidden checks."""
     rows: list[ExerciseRow] = []
     items: dict[str, list[Location]] = {key: [] for key in syllabus.items}
     errata: dict[int, list[Location]] = {number: [] for number in syllabus.errata}
     findings: list[Finding] = []
     for name, notebook, checks in chapters:
         for cell, location, course in _locations(name, notebook):
-            for key, covered in [(k, items) for k in course.get("covers", [])] + [
+            for key, locations_by_key in [(k, items) for k in course.get("covers", [])] + [
                 (n, errata) for n in course.get("errata", [])
             ]:
-                if key not in covered:
+                if key not in locations_by_key:
                     findings.append(Finding(f"{name}.ipynb", cell, f"the syllabus has no {key!r}"))
-                elif location not in covered[key]:
-                    covered[key].append(location)
+                elif location not in locations_by_key[key]:
+                    locations_by_key[key].append(location)
         chapter_rows, problems = _rows(name, notebook, checks, syllabus)
         rows += chapter_rows
         findings += problems
-    tested = {row.objective for row in rows if row.checks}
+    tested_objectives = {row.objective for row in rows if row.checks}
     findings += [
         Finding(course_paths.course().syllabus, None, f"no {kind} covers {key!r}: {text}")
-        for kind, missing in (
-            ("hidden check", {k: t for k, t in syllabus.objectives.items() if k not in tested}),
+        for kind, uncovered in (
+            ("hidden check", {k: t for k, t in syllabus.objectives.items() if k not in tested_objectives}),
             ("notebook", {k: t for k, t in syllabus.items.items() if not items[k]}),
             ("notebook", {n: wrong for n, (wrong, _) in syllabus.errata.items() if not errata[n]}),
         )
-        for key, text in missing.items()
+        for key, text in uncovered.items()
     ]
     return SyllabusCoverage(tuple(rows), items, errata, tuple(findings))
 

@@ -20,7 +20,7 @@ from autograder.author.course.points import point_differences
 from autograder.result.model import write_atomically
 from autograder.suite import suites
 
-SHOWN_LINES = 12
+MAX_DIFF_LINES = 12  # how many lines of a difference are shown; further ones are counted
 
 
 @dataclass(frozen=True)
@@ -89,8 +89,8 @@ def sync_chapter(chapter: Chapter, *, write: bool = True) -> list[Finding]:
     author can fix.
     """
     notebook = chapter.read()
-    graded = any(map(is_graded, notebook.cells))
-    points = suites.hidden(chapter.assignment).groups if graded else None
+    is_graded_chapter = any(map(is_graded, notebook.cells))
+    points = suites.hidden(chapter.assignment).groups if is_graded_chapter else None
     differences = list(_differences(chapter, notebook, points))
     for finding, fix in differences:
         if fix is None:
@@ -109,15 +109,15 @@ def _differences(chapter: Chapter, notebook: NotebookNode, points: Mapping[str, 
         yield from point_differences(name, notebook, points)
     for cell in notebook.cells:
         try:
-            copied = copied_file(cell)
-            expected = None if copied is None else copied.expected_text()
+            copy = copied_file(cell)
+            expected_text = None if copy is None else copy.expected_text()
         except CourseError as error:
             yield Finding(name, cell.id, str(error)), None
             continue
-        if expected is not None and copied is not None and cell.source != expected:
-            message = f"differs from solutions/{copied.source}; run `autograder course sync`"
-            finding = Finding(name, cell.id, message + _diff(cell.source, expected))
-            yield finding, partial(setattr, cell, "source", expected)
+        if expected_text is not None and copy is not None and cell.source != expected_text:
+            message = f"differs from solutions/{copy.source}; run `autograder course sync`"
+            finding = Finding(name, cell.id, message + _diff(cell.source, expected_text))
+            yield finding, partial(setattr, cell, "source", expected_text)
     try:
         pairs = given_files(notebook)
         texts = {target: read_solution(source) for target, source in pairs.items()}
@@ -138,5 +138,5 @@ def _diff(current: str, expected: str) -> str:
     """Return the first differing lines, indented."""
     lines = difflib.unified_diff(current.splitlines(), expected.splitlines(), "notebook", "reference", n=1, lineterm="")
     diff_lines = list(lines)[2:]
-    omitted = [f"... and {len(diff_lines) - SHOWN_LINES} more lines"] if len(diff_lines) > SHOWN_LINES else []
-    return "".join(f"\n    {line}" for line in diff_lines[:SHOWN_LINES] + omitted)
+    omission = [f"... and {len(diff_lines) - MAX_DIFF_LINES} more lines"] if len(diff_lines) > MAX_DIFF_LINES else []
+    return "".join(f"\n    {line}" for line in diff_lines[:MAX_DIFF_LINES] + omission)

@@ -1,7 +1,7 @@
-"""Writes the instructors' page: where the course covers the syllabus, and which checks test it.
+"""Writes a page for instructors that shows where the course covers the syllabus and which checks test it.
 
-It also writes the titles of an assignment's hidden checks, which `check(...)` shows to students when all visible checks
-have passed. A title describes a requirement and reveals no input.
+It also writes the titles of an assignment's hidden checks to a file. `check(...)` shows them to students when all
+visible checks have passed. A title describes a requirement and reveals no input.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ notebooks' metadata, the hidden checks and `{syllabus}`; a test holds it.
 
 
 def course_page() -> tuple[str, tuple[Finding, ...]]:
-    """Return the instructors' page of the course, and the problems in its notebooks and syllabus."""
-    syllabus, graded = Syllabus.read(), suites.graded_assignments()
+    """Return the page for instructors, and the problems in the course's notebooks and syllabus."""
+    syllabus, graded_assignments = Syllabus.read(), suites.graded_assignments()
     notebooks = {chapter.assignment: chapter.read() for chapter in chapters()}
     coverage = find_coverage(
         syllabus,
         [
-            (name, notebook, suites.hidden(name).checks if name in graded else ())
+            (name, notebook, suites.hidden(name).checks if name in graded_assignments else ())
             for name, notebook in notebooks.items()
         ],
     )
@@ -50,8 +50,8 @@ def course_page() -> tuple[str, tuple[Finding, ...]]:
 
 
 def page(syllabus: Syllabus, coverage: SyllabusCoverage, titles: dict[str, str], efforts: dict[str, Effort]) -> str:
-    """Return the instructors' page as Markdown. Titles and efforts are given by chapter, in order."""
-    points = {name: _points(coverage, name) for name in titles}
+    """Return the page for instructors as Markdown. The keys of `titles` and `efforts` are the chapters, in order."""
+    points = {name: _chapter_points(coverage, name) for name in titles}
     return "\n".join(
         [
             HEAD.format(syllabus=course_paths.course().syllabus),
@@ -66,7 +66,7 @@ def page(syllabus: Syllabus, coverage: SyllabusCoverage, titles: dict[str, str],
                         f"[{name}]({name}/{name}.ipynb)",
                         title,
                         f"{points[name]:g}" if points[name] else "",
-                        *_effort(efforts[name]),
+                        *_effort_cells(efforts[name]),
                     )
                     for name, title in titles.items()
                 ],
@@ -75,7 +75,7 @@ def page(syllabus: Syllabus, coverage: SyllabusCoverage, titles: dict[str, str],
             f"{MINUTES_A_LINE:g} minutes for a line to write. *At one go* is the longest time "
             f"before a cell to write or between two, for a reader of {FLUENT_WORDS_A_MINUTE:g} words a minute.\n",
             "## Objectives\n",
-            *table(("objective", "chapter", "exercise", "hidden checks"), _objectives(syllabus, coverage)),
+            *table(("objective", "chapter", "exercise", "hidden checks"), _objective_rows(syllabus, coverage)),
             "## The chapter's contents\n",
             *table(
                 ("what", "where"),
@@ -93,18 +93,18 @@ def page(syllabus: Syllabus, coverage: SyllabusCoverage, titles: dict[str, str],
     )
 
 
-def _effort(work: Effort) -> tuple[str, ...]:
+def _effort_cells(work: Effort) -> tuple[str, ...]:
     cells = (str(work.words), str(work.cells), str(work.lines), duration_text(work.reading + work.writing))
     return *cells, f"{work.longest_reading:.1f}"
 
 
-def _points(coverage: SyllabusCoverage, name: str) -> float:
-    """Return a chapter's points. A check for two objectives counts once."""
+def _chapter_points(coverage: SyllabusCoverage, name: str) -> float:
+    """Return a chapter's points. A check that tests two objectives counts once."""
     checks = {check.id: check.points for row in coverage.rows if row.chapter == name for check in row.checks}
     return sum(checks.values())
 
 
-def _objectives(syllabus: Syllabus, coverage: SyllabusCoverage) -> Iterator[tuple[str, ...]]:
+def _objective_rows(syllabus: Syllabus, coverage: SyllabusCoverage) -> Iterator[tuple[str, ...]]:
     for key, text in syllabus.objectives.items():
         for row in coverage.rows:
             if row.objective == key:
@@ -117,7 +117,7 @@ def _location_text(locations: Sequence[Location]) -> str:
 
 
 def titles() -> dict[Path, str]:
-    """Return the text of each assignment's file with titles for students, by path."""
+    """Return the path and the text of each file that lists the titles of an assignment's hidden checks."""
     return {
         course_paths.hidden_titles(name): titles_of(name)
         for name in sorted({*suites.checkable_assignments()} & {*suites.graded_assignments()})
@@ -125,7 +125,7 @@ def titles() -> dict[Path, str]:
 
 
 def titles_of(assignment: str) -> str:
-    """Return the text of an assignment's file of titles for students."""
+    """Return the titles of an assignment's hidden checks as JSON, except titles that a visible check shares."""
     visible_titles = {check.title for check in suites.visible(assignment).checks}
-    hidden = [check.title for check in suites.hidden(assignment).checks if check.title not in visible_titles]
-    return json.dumps(hidden, indent=1, ensure_ascii=False) + "\n"
+    hidden_titles = [check.title for check in suites.hidden(assignment).checks if check.title not in visible_titles]
+    return json.dumps(hidden_titles, indent=1, ensure_ascii=False) + "\n"

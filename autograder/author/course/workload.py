@@ -1,6 +1,6 @@
 """Estimates how long a beginner takes for a chapter. The chapter's first cell states this time.
 
-Chapters 0 to 4, worked through as by a beginner, were estimated at 27, 90, 130, 230 and 100 minutes. Given
+A person who worked through chapters 0 to 4 estimated that a beginner needs 27, 90, 130, 230 and 100 minutes. Given
 WORDS_A_MINUTE and MINUTES_A_CELL, MINUTES_A_LINE is the least-squares fit to these five times. The largest error is
 half an hour.
 """
@@ -16,11 +16,11 @@ from autograder.author.course.cells import is_solution
 from autograder.author.course.findings import Finding
 from autograder.author.course.solution_markers import BEGIN, END
 
-WORDS_A_MINUTE = 120.0  # of a technical text, for a reader whose second language is English
-FLUENT_WORDS_A_MINUTE = 200.0  # for the limit of `longest_reading`
-MINUTES_A_CELL = 1.0  # read a code cell, run it, and look at its output
-MINUTES_A_LINE = 1.2  # think, write and correct
-LONGEST_IN_MINUTES = 100.0
+WORDS_A_MINUTE = 120.0  # how fast somebody whose second language is English reads a technical text
+FLUENT_WORDS_A_MINUTE = 200.0  # how fast a fluent reader reads a text; `longest_reading` uses this speed
+MINUTES_A_CELL = 1.0  # to read a code cell, run it, and look at its output
+MINUTES_A_LINE = 1.2  # to think about a line, write it and correct it
+MAX_SHOWN_IN_MINUTES = 100.0
 _ANSWER = re.compile(f"{BEGIN}\n(.*?){END}", re.DOTALL)
 
 
@@ -63,13 +63,13 @@ def effort(source: NotebookNode) -> Effort:
 
 
 def time_sentence(work: Effort) -> str:
-    """Return the sentence about the required time for the first cell of a chapter."""
+    """Return the sentence for the first cell of a chapter that tells students how long the chapter takes."""
     return f"{duration_text(work.reading)} to read and run, {duration_text(work.writing)} for the exercises"
 
 
 def duration_text(minutes: float) -> str:
     """Return a time in words: in steps of five minutes up to 100 minutes, then in half hours."""
-    if minutes <= LONGEST_IN_MINUTES:
+    if minutes <= MAX_SHOWN_IN_MINUTES:
         return f"{max(5, 5 * round(minutes / 5))} minutes"
     halves = round(minutes / 30)
     return f"{halves // 2}{'½' if halves % 2 else ''} hours"

@@ -11,7 +11,7 @@ import yaml
 
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding, display_path
-from autograder.author.course.schema_sentences import KeyPath, broken_schema, file_schema
+from autograder.author.course.schema_sentences import KeyPath, file_schema, schema_violations
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # equivalent; the C version is ten times as fast
 
@@ -33,10 +33,10 @@ class YamlFile:
     findings: tuple[Finding, ...] = ()
 
     def finding(self, path: KeyPath, message: str) -> Finding:
-        """Return a finding at a key path, or at the innermost part around it that the file has."""
-        enclosing = (path[:length] for length in range(len(path), 0, -1))
+        """Return a finding at a key path, or at the innermost enclosing part if the file lacks this path."""
+        enclosing_paths = (path[:length] for length in range(len(path), 0, -1))
         return Finding(
-            self.label, None, message, next((self.lines[part] for part in enclosing if part in self.lines), 1)
+            self.label, None, message, next((self.lines[part] for part in enclosing_paths if part in self.lines), 1)
         )
 
 
@@ -60,13 +60,13 @@ def read_yaml(path: Path, *, label: str = "", schema: str = "") -> YamlFile:
         context = f", {error.context}" if error.context else ""
         message = f"cannot be read as YAML: {error.problem}{context}"
         return YamlFile(label, None, {}, (Finding(label, None, message, mark.line + 1 if mark else 1),))
-    except (yaml.YAMLError, ValueError) as error:  # a character that YAML forbids, or an invalid date
+    except (yaml.YAMLError, ValueError) as error:  # for example, a character that YAML forbids or an invalid date
         return YamlFile(label, None, {}, (Finding(label, None, f"cannot be read as YAML: {error}", 1),))
     lines: dict[KeyPath, int] = {}
     duplicates = [] if root is None else list(_walk(root, (), lines))
     file = YamlFile(label, data, lines)
     problems = [(key, f"`{key[-1]}` occurs twice: only the last one would count") for key in duplicates]
-    problems += broken_schema(data, file_schema(schema or path.name))
+    problems += schema_violations(data, file_schema(schema or path.name))
     return replace(file, findings=tuple(file.finding(key, message) for key, message in problems))
 
 

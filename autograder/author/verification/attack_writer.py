@@ -1,4 +1,4 @@
-"""Writes attacks: the reference, or a mutant with known failures, with an added payload."""
+"""Writes attacks: adds a payload to the reference, or to a mutant whose failures are known."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from autograder.author.verification.mutants import Mutant, mutants, write_mutant
 from autograder.author.verification.verdicts import Attack
 from autograder.suite import suites
 
-MIN_ID_LENGTH = 14  # characters; a shorter check id may coincide with another name
+MIN_ID_LENGTH = 14  # characters; a shorter check id may also be the name of something else
 Write = Callable[[Path], None]
 
 # Spins each node in its own thread, so that the program cannot be stepped and runs in real time.
@@ -43,17 +43,17 @@ def _is_told(names={names!r}):
 
 @dataclass(frozen=True)
 class Chapter:
-    """A chapter whose reference and mutants form the basis of attacks."""
+    """A chapter whose reference and mutants are the basis of attacks."""
 
     assignment: str
 
     @property
     def checks(self) -> frozenset[str]:
-        """The ids of every check."""
+        """The ids of all hidden checks."""
         return frozenset(check.id for check in suites.hidden(self.assignment).checks)
 
     def mutant(self, name: str) -> Mutant:
-        """Return a mutant by its name."""
+        """Return the mutant with this id."""
         return next(mutant for mutant in mutants(self.assignment) if mutant.id == name)
 
     def write(
@@ -67,10 +67,10 @@ class Chapter:
         """Return a function that writes a source tree with payloads. Paths are relative to its `src`.
 
         Args:
-            base: id of the mutant to start from; None for the reference.
-            heads: text to insert at the start of a file.
-            swaps: part of a file's text, and its replacement.
-            files: whole files to write.
+            base: the id of the mutant to start from; None to start from the reference.
+            heads: for each file, the text to insert at its start.
+            swaps: for each file, the text to replace and its replacement.
+            files: the text of each additional file.
         """
 
         def write(folder: Path) -> None:
@@ -96,12 +96,12 @@ class Chapter:
         """Return two attacks that try to hide a mistake: one runs in real time, one behaves well if it detects a check.
 
         Args:
-            manner: how the program behaves, for the ids of the attacks.
+            manner: how the program behaves; the ids of the attacks begin with it.
             mistake: a description of the mistake.
-            base: id of the mutant that makes it.
+            base: the id of the mutant that makes the mistake.
             file: the file that gets the payloads.
-            swap: part of the reference's file, and a replacement that makes the mistake unless `_is_told()`, which
-                returns whether the program's environment names the hidden checks.
+            swap: a part of this file in the reference, and a replacement. The replacement makes the mistake only if
+                `_is_told()` is false, that is, if nothing around the program names the hidden checks.
         """
         names = (self.assignment, "hidden", *sorted(name for name in self.checks if len(name) > MIN_ID_LENGTH))
         fails = self.mutant(base).fails

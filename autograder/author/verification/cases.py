@@ -29,7 +29,7 @@ class Case:
     """A submission with a known mark.
 
     `name` is unique in the assignment. `write` writes the submission to a folder. `verify` describes how a result
-    differs from the expected one, or returns an empty string. `options` limits the checks that are run.
+    differs from the expected one, or returns an empty string. `options` may limit which checks are run.
     """
 
     assignment: str
@@ -47,41 +47,45 @@ def cases(assignment: str, *, quick: bool = False) -> tuple[Case, ...]:
     attacks and no answers from `equivalent_rewrites`.
     """
     sources, chapter = suites.hidden(assignment).sources, Chapter(course_paths.chapter(assignment))
-    selected = [
+    test_cases = [
         Case(assignment, CaseKind.REFERENCE, "reference", partial(write_reference, sources), verify_full_marks),
         Case(assignment, CaseKind.RELEASE, "release", partial(write_released, chapter), verify_zero),
         *_variant_cases(assignment, sources),
     ]
     if quick:
-        selected += [_mutant_case(assignment, m, sources, only) for m, only in one_mutant_per_check(assignment)]
+        test_cases += [_mutant_case(assignment, m, sources, only) for m, only in one_mutant_per_check(assignment)]
     else:
-        selected += [_mutant_case(assignment, mutant, sources) for mutant in mutants(assignment)]
-        selected += [_attack_case(assignment, attack) for attack in attacks(assignment)]
-        selected += rewritten_cases(assignment)
-    return tuple(selected)
+        test_cases += [_mutant_case(assignment, mutant, sources) for mutant in mutants(assignment)]
+        test_cases += [_attack_case(assignment, attack) for attack in attacks(assignment)]
+        test_cases += rewritten_cases(assignment)
+    return tuple(test_cases)
 
 
 def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]]:
     """Return a small set of mutants that together fail every check.
 
-    Each mutant is returned with the checks that it represents and their dependencies. A mutant that fails a check
-    alone is preferred to one that also fails a dependency of that check.
+    Each mutant comes with the checks that it represents and their dependencies. A mutant that fails a check directly
+    is preferred to one that also fails a dependency of that check.
     """
     suite = suites.hidden(assignment)
     dependencies = {check.id: frozenset(check.dependencies) for check in suite.checks}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
-    direct = {m.id: {name for name in m.fails if not dependencies[name] & m.fails} for m in candidates}
-    failed = {m.id: set(m.fails) for m in candidates}
-    quick = [m for m in candidates if not m.slow]
-    chosen: dict[str, set[str]] = {}
-    uncovered = set(dependencies)
-    for covers, among in ((direct, quick), (failed, quick), (failed, candidates)):
-        while best := max(among, key=lambda m: len(covers[m.id] & uncovered), default=None):
-            if not covers[best.id] & uncovered:
+    direct_failures = {m.id: {name for name in m.fails if not dependencies[name] & m.fails} for m in candidates}
+    all_failures = {m.id: set(m.fails) for m in candidates}
+    quick_mutants = [m for m in candidates if not m.slow]
+    chosen_checks: dict[str, set[str]] = {}
+    uncovered_checks = set(dependencies)
+    for covered_by, pool in (
+        (direct_failures, quick_mutants),
+        (all_failures, quick_mutants),
+        (all_failures, candidates),
+    ):
+        while best := max(pool, key=lambda m: len(covered_by[m.id] & uncovered_checks), default=None):
+            if not covered_by[best.id] & uncovered_checks:
                 break
-            chosen.setdefault(best.id, set()).update(covers[best.id] & uncovered)
-            uncovered -= covers[best.id]
-    return [(m, suite.with_dependencies(*chosen[m.id])) for m in candidates if m.id in chosen]
+            chosen_checks.setdefault(best.id, set()).update(covered_by[best.id] & uncovered_checks)
+            uncovered_checks -= covered_by[best.id]
+    return [(m, suite.with_dependencies(*chosen_checks[m.id])) for m in candidates if m.id in chosen_checks]
 
 
 def _mutant_case(assignment: str, mutant: Mutant, sources: tuple[str, ...], only: tuple[str, ...] = ()) -> Case:
@@ -123,8 +127,8 @@ def _attack_case(assignment: str, attack: Attack) -> Case:
 
 
 def attacks(assignment: str) -> tuple[Attack, ...]:
-    """Return the attacks on an assignment, from the function `attacks()` in `attacks.py` beside its suites."""
+    """Return the attacks on an assignment, which `attacks()` in `attacks.py` beside its suites defines."""
     if not (suites.hidden(assignment).folder / "attacks.py").is_file():
         return ()
-    defined: tuple[Attack, ...] = import_module(f"{suites.HOME}.ch{assignment}.attacks").attacks()
-    return defined
+    chapter_attacks: tuple[Attack, ...] = import_module(f"{suites.HOME}.ch{assignment}.attacks").attacks()
+    return chapter_attacks

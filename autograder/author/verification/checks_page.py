@@ -30,7 +30,8 @@ def checks_page() -> str:
 def _chapter(name: str) -> list[str]:
     checks, named_mutants = suites.hidden(name).checks, mutants(name)
     check_rows = _check_rows(checks, named_mutants)
-    requirement_rows = [_requirement_row(each, checks, named_mutants) for each in contract(name).values()]
+    requirements = contract(name).values()
+    requirement_rows = [_requirement_row(requirement, checks, named_mutants) for requirement in requirements]
     heading = f"### The requirements of {name}\n"
     return [*table(CHECK_HEADINGS, check_rows), heading, *table(REQUIREMENT_HEADINGS, requirement_rows)]
 
@@ -40,9 +41,9 @@ def _requirement_row(
 ) -> tuple[str, ...]:
     if requirement.unchecked:
         return requirement.text, f"no check: {requirement.unchecked}", ""
-    covering = [check for check in checks if requirement.id in check.covers]
-    broken_by = dict.fromkeys(m.id for check in covering for m in named_mutants if _fails(m, check))
-    return requirement.text, ", ".join(f"`{check.id}`" for check in covering), ", ".join(broken_by)
+    covering_checks = [check for check in checks if requirement.id in check.covers]
+    breaking_mutants = dict.fromkeys(m.id for check in covering_checks for m in named_mutants if _fails(m, check))
+    return requirement.text, ", ".join(f"`{check.id}`" for check in covering_checks), ", ".join(breaking_mutants)
 
 
 def _check_rows(checks: Sequence[Check], named_mutants: Sequence[Mutant]) -> Iterator[tuple[str, ...]]:

@@ -19,7 +19,7 @@ from autograder.diagnosis import Kind
 from autograder.result.model import CheckResult, Result, Status
 from autograder.suite import Outcome
 
-MAX_RATIO = 2.0  # of the lost points to the points of its own check
+MAX_RATIO = 2.0  # if a mutant loses more than this multiple of the points of its own check, it needs a reason
 NOT_CHECKED, SAME_REQUIREMENT, AFTER, SAME_MESSAGE = (
     "not checked",
     "of the same requirement",
@@ -62,10 +62,16 @@ class Cost:
 
 def costs(verdicts: Iterable[Verdict]) -> tuple[Cost, ...]:
     """Return the costs of the named mutants, most expensive first. Their whole suites must have been run."""
-    graded = [each for each in verdicts if each.kind is CaseKind.MUTANT and each.result.status is Status.GRADED]
-    by_id = {(name, each.id): each for name in {verdict.assignment for verdict in graded} for each in mutants(name)}
-    unsorted = [_cost(by_id[verdict.assignment, verdict.name], verdict.result) for verdict in graded]
-    return tuple(sorted(unsorted, key=lambda cost: cost.lost / cost.points, reverse=True))
+    graded_verdicts = [
+        verdict for verdict in verdicts if verdict.kind is CaseKind.MUTANT and verdict.result.status is Status.GRADED
+    ]
+    by_id = {
+        (name, mutant.id): mutant
+        for name in {verdict.assignment for verdict in graded_verdicts}
+        for mutant in mutants(name)
+    }
+    unsorted_costs = [_cost(by_id[verdict.assignment, verdict.name], verdict.result) for verdict in graded_verdicts]
+    return tuple(sorted(unsorted_costs, key=lambda cost: cost.lost / cost.points, reverse=True))
 
 
 def unexplained(costs: Sequence[Cost]) -> list[str]:
@@ -79,7 +85,7 @@ def unexplained(costs: Sequence[Cost]) -> list[str]:
 
 
 def counts(costs: Sequence[Cost]) -> dict[str, object]:
-    """Return how many mutants lose too many points, and how many of them have no reason."""
+    """Return how many mutants lose so many points that they need a reason, and how many of these have none."""
     expensive = sum(cost.is_expensive for cost in costs)
     return {"mutants_dear": expensive, "mutants_dear_unexplained": len(unexplained(costs))}
 
@@ -98,43 +104,46 @@ def _cells(cost: Cost) -> Iterator[str]:
 
 
 def _cost(mutant: Mutant, result: Result) -> Cost:
-    lost = [check for check in result.checks if check.outcome is not Outcome.PASSED]
-    own = next(check for check in result.checks if check.id == mutant.check)
-    broken = dict.fromkeys(name for check in lost if check.outcome is Outcome.FAILED for name in check.holds)
-    cost = Cost(result.assignment, mutant.id, own.id, own.max_points, _points(lost), tuple(broken))
-    return replace(cost, reason=_reason(mutant, result, own, lost)) if cost.is_expensive else cost
+    not_passed = [check for check in result.checks if check.outcome is not Outcome.PASSED]
+    own_check = next(check for check in result.checks if check.id == mutant.check)
+    requirements_findings = dict.fromkeys(
+        name for check in not_passed if check.outcome is Outcome.FAILED for name in check.holds
+    )
+    lost = _points(not_passed)
+    cost = Cost(result.assignment, mutant.id, own_check.id, own_check.max_points, lost, tuple(requirements_findings))
+    return replace(cost, reason=_reason(mutant, result, own_check, not_passed)) if cost.is_expensive else cost
 
 
-def _reason(mutant: Mutant, result: Result, own: CheckResult, lost: Sequence[CheckResult]) -> str:
+def _reason(mutant: Mutant, result: Result, own_check: CheckResult, not_passed: Sequence[CheckResult]) -> str:
     if mutant.reason:
         return mutant.reason
     if result.diagnosis.kind is not Kind.OK:
         return str(result.diagnosis.kind.value).replace("_", " ")
     by_explanation: dict[str, list[CheckResult]] = {}
-    for check in lost:
-        by_explanation.setdefault(_explanation(check, own, lost), []).append(check)
-    if _points(by_explanation.pop("", ())) > MAX_RATIO * own.max_points:
+    for check in not_passed:
+        by_explanation.setdefault(_explanation(check, own_check, not_passed), []).append(check)
+    if _points(by_explanation.pop("", ())) > MAX_RATIO * own_check.max_points:
         return ""
     return "; ".join(f"{_points(checks):g} {explanation}" for explanation, checks in by_explanation.items())
 
 
-def _explanation(check: CheckResult, own: CheckResult, lost: Sequence[CheckResult]) -> str:
+def _explanation(check: CheckResult, own_check: CheckResult, not_passed: Sequence[CheckResult]) -> str:
     """Return why a check failed together with the mutant's own check, or an empty string if nothing explains it."""
-    if check.id == own.id:
+    if check.id == own_check.id:
         return ""
     if check.outcome is Outcome.NOT_CHECKED:
         return NOT_CHECKED
-    if set(check.holds) & set(own.holds):
+    if set(check.holds) & set(own_check.holds):
         return SAME_REQUIREMENT
-    predecessors = {each.id: each.after for each in lost}
-    reached, pending = set[str](), [check.id]
-    while pending:
-        if (name := pending.pop()) in predecessors and name not in reached:
-            reached.add(name)
-            pending += predecessors[name]
-    if own.id in reached:
+    predecessors = {other.id: other.after for other in not_passed}
+    reached_checks, pending_checks = set[str](), [check.id]
+    while pending_checks:
+        if (name := pending_checks.pop()) in predecessors and name not in reached_checks:
+            reached_checks.add(name)
+            pending_checks += predecessors[name]
+    if own_check.id in reached_checks:
         return AFTER
-    return SAME_MESSAGE if sum(each.message == check.message for each in lost) > 1 else ""
+    return SAME_MESSAGE if sum(other.message == check.message for other in not_passed) > 1 else ""
 
 
 def _points(checks: Iterable[CheckResult]) -> float:

@@ -27,9 +27,9 @@ from autograder.author.verification.python_operators import (
 )
 
 MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
-# Operands that bind tighter than a comparison.
+# Operands that bind more tightly than a comparison.
 TIGHT_OPERANDS = (ast.Attribute, ast.BinOp, ast.Call, ast.Constant, ast.Name, ast.Subscript, ast.UnaryOp)
-LONGEST_LINE = 99  # columns, the limit of the ROS linters
+MAX_COLUMNS = 99  # the longest line that the ROS linters accept
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -49,32 +49,32 @@ def rewritten(text: str) -> str:
 
 def formatted(text: str) -> str:
     """Format a module with ruff. The quotes are preserved, because ROS has its own rule for them."""
-    command = [sys.executable, "-m", "ruff", "format", "--isolated", f"--line-length={LONGEST_LINE}"]
+    command = [sys.executable, "-m", "ruff", "format", "--isolated", f"--line-length={MAX_COLUMNS}"]
     command += ["--config", "format.quote-style='preserve'", "-"]
     return subprocess.run(command, cwd="/", input=text, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 
 def rewrites() -> Mapping[str, Callable[[str], str]]:
-    """Return the available rewrites by name. `formatted` needs ruff, which is only installed for developers."""
+    """Return the available rewrites by name. `formatted` needs ruff, which is installed only for developers."""
     return {"rewritten": rewritten, "formatted": formatted} if find_spec("ruff") else {"rewritten": rewritten}
 
 
 def _only_fitting(
     rewriting: Callable[[Source, list[NodeInContext]], Iterator[Replacement]],
 ) -> Callable[[Source, list[NodeInContext]], Iterator[Replacement]]:
-    """Keep only replacements that do not overlap, stay within one line, and do not make it too long."""
+    """Keep only the replacements that do not overlap, stay within one line, and do not make the line too long."""
 
     @functools.wraps(rewriting)
-    def fitting(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
+    def filter_replacements(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
         last_end = -1
-        for start, end, new in sorted(rewriting(source, nodes), key=lambda one: (one[0], -one[1])):
+        for start, end, new in sorted(rewriting(source, nodes), key=lambda change: (change[0], -change[1])):
             first, last = source.data.rfind(b"\n", 0, start) + 1, source.data.find(b"\n", end)
             columns = (start - first) + len(new) + (last - end)
-            if start > last_end and b"\n" not in source.data[start:end] and columns <= LONGEST_LINE:
+            if start > last_end and b"\n" not in source.data[start:end] and columns <= MAX_COLUMNS:
                 yield start, end, new
                 last_end = end
 
-    return fitting
+    return filter_replacements
 
 
 @_only_fitting
@@ -85,7 +85,7 @@ def mirrored_comparisons(source: Source, nodes: list[NodeInContext]) -> Iterator
         if isinstance(node, ast.Compare) and len(node.ops) == 1:
             sides = (node.left, node.comparators[0])
             symbol = MIRRORED.get(SYMBOLS[type(node.ops[0])])
-            if symbol and not all(_calls(side) for side in sides):
+            if symbol and not all(_contains_call(side) for side in sides):
                 left, right = (_operand(source, side) for side in sides)
                 yield (*source.span(node), f"{right} {symbol} {left}")
 
@@ -102,7 +102,7 @@ def inverted_conditions(source: Source, nodes: list[NodeInContext]) -> Iterator[
 
 @_only_fitting
 def expanded_increments(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
-    """Yield `x = x + 1` for `x += 1`, for numbers only: with a list, it would create a new list."""
+    """Yield `x = x + 1` for `x += 1` if a constant is added. For a list, the rewrite would create a new list."""
     for context in nodes:
         node = context.node
         if isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add) and isinstance(node.value, ast.Constant):
@@ -112,27 +112,27 @@ def expanded_increments(source: Source, nodes: list[NodeInContext]) -> Iterator[
 
 def renamed_variables(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield a new name of the same length for each local variable, so that continuation lines stay aligned."""
-    taken = set(re.findall(r"\w+", source.data.decode()))
+    used_names = set(re.findall(r"\w+", source.data.decode()))
     for context in nodes:
         function = context.node
         if not isinstance(function, FUNCTIONS) or any(isinstance(outer, FUNCTIONS) for outer in context.ancestors):
             continue
-        names = {name: f"{name[:-1]}_" for name in _variables(function) if len(name) > 1}
-        once = {name for name, count in Counter(names.values()).items() if count == 1} - taken
+        new_names = {name: f"{name[:-1]}_" for name in _variables(function) if len(name) > 1}
+        unique_names = {name for name, count in Counter(new_names.values()).items() if count == 1} - used_names
         for node in ast.walk(function):
-            if isinstance(node, ast.Name) and names.get(node.id) in once:
-                yield (*source.span(node), names[node.id])
+            if isinstance(node, ast.Name) and new_names.get(node.id) in unique_names:
+                yield (*source.span(node), new_names[node.id])
 
 
 def reordered_methods(source: Source, nodes: list[NodeInContext]) -> Iterator[Replacement]:
     """Yield the methods of each class, except `__init__`, in reverse order."""
     for node in (context.node for context in nodes if isinstance(context.node, ast.ClassDef)):
-        methods = [each for each in node.body if isinstance(each, FUNCTIONS) and each.name != "__init__"]
-        names = {each.name for each in methods}
-        decorators = [ast.walk(decorator) for each in methods for decorator in each.decorator_list]
-        needed = {part.id for walk in decorators for part in walk if isinstance(part, ast.Name)}
-        if len(names) == len(methods) and not needed & names:
-            spans = [_with_decorators(source, each) for each in methods]
+        methods = [method for method in node.body if isinstance(method, FUNCTIONS) and method.name != "__init__"]
+        names = {method.name for method in methods}
+        decorators = [ast.walk(decorator) for method in methods for decorator in method.decorator_list]
+        needed_names = {part.id for walk in decorators for part in walk if isinstance(part, ast.Name)}
+        if len(names) == len(methods) and not needed_names & names:
+            spans = [_span_with_decorators(source, method) for method in methods]
             for (start, end), (first, last) in zip(spans, reversed(spans), strict=True):
                 yield start, end, source.data[first:last].decode()
 
@@ -142,9 +142,9 @@ def return_types(source: Source, nodes: list[NodeInContext]) -> Iterator[Replace
     """Yield `-> None` for each function that returns nothing."""
     for node in (context.node for context in nodes if isinstance(context.node, FUNCTIONS)):
         results = [
-            each
-            for each in ast.walk(node)
-            if isinstance(each, ast.Yield | ast.YieldFrom) or (isinstance(each, ast.Return) and each.value)
+            part
+            for part in ast.walk(node)
+            if isinstance(part, ast.Yield | ast.YieldFrom) or (isinstance(part, ast.Return) and part.value)
         ]
         if node.returns is None and not results:
             colon = _end_of_header(source, node)
@@ -159,8 +159,8 @@ def postponed_annotations(source: Source, nodes: list[NodeInContext]) -> Iterato
         yield end, end, "\n\nfrom __future__ import annotations"
 
 
-def _calls(node: ast.AST) -> bool:
-    return any(isinstance(each, ast.Call | ast.Await) for each in ast.walk(node))
+def _contains_call(node: ast.AST) -> bool:
+    return any(isinstance(part, ast.Call | ast.Await) for part in ast.walk(node))
 
 
 def _operand(source: Source, node: ast.expr) -> str:
@@ -172,17 +172,17 @@ def _variables(function: Function) -> set[str]:
 
     Before Python 3.12, `ast` reports wrong positions inside f-strings.
     """
-    inside = list(ast.walk(function))
-    stored = {node.id for node in inside if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    other = {node.arg for node in inside if isinstance(node, ast.arg)}
-    other |= {name for node in inside if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
-    other |= {node.name for node in inside if isinstance(node, ast.ExceptHandler) and node.name}
-    for outer in (node for node in inside if isinstance(node, ast.JoinedStr | ast.ClassDef)):
-        other |= {node.id for node in ast.walk(outer) if isinstance(node, ast.Name)}
-    return stored - other
+    nodes = list(ast.walk(function))
+    assigned_names = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    excluded_names = {node.arg for node in nodes if isinstance(node, ast.arg)}
+    excluded_names |= {name for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for name in node.names}
+    excluded_names |= {node.name for node in nodes if isinstance(node, ast.ExceptHandler) and node.name}
+    for outer in (node for node in nodes if isinstance(node, ast.JoinedStr | ast.ClassDef)):
+        excluded_names |= {node.id for node in ast.walk(outer) if isinstance(node, ast.Name)}
+    return assigned_names - excluded_names
 
 
-def _with_decorators(source: Source, function: Function) -> tuple[int, int]:
+def _span_with_decorators(source: Source, function: Function) -> tuple[int, int]:
     start, end = source.span(function)
     for decorator in function.decorator_list[:1]:
         start = source.data.rindex(b"@", 0, source.span(decorator)[0])

@@ -4,8 +4,8 @@
 
 Starting a worker takes about one core-second, as long as the checks of many submissions. The verification grades
 thousands of submissions that the course itself contains, so one worker in one worker sandbox grades many of them in
-sequence. A student's submission always gets a new worker in a new sandbox (`own_sandbox.in_own_sandbox`), and so does
-an attack. The inner sandboxes around students' code are the same in both cases.
+sequence. A student's submission always gets a new worker in a new sandbox (`own_sandbox.run_in_own_sandbox`), and so
+does an attack. The inner sandboxes around students' code are the same in both cases.
 
 The server receives jobs. For each job, a child sends the files that it produced, and then the server sends the child's
 exit status and output. Neither side unpickles anything.
@@ -30,20 +30,19 @@ from autograder.run.sandbox.bubblewrap import OUT
 from autograder.run.sandbox.launcher import warm_up
 from autograder.run.sandbox.messages import send_message
 
-MAX_OUTPUT = 1024 * 1024  # bytes of a child's output in the reply, from its end
+MAX_OUTPUT = 1024 * 1024  # bytes; if a child's output is longer, the reply contains only its end
 
 
 def serve(scratch: Path, client: Connection) -> None:
-    """Run jobs until the client closes the connection, each in a new child, and remove the files that it leaves."""
+    """Run each job in a new child, and remove the files that it leaves, until the client closes the connection."""
     log_file = scratch / "output.log"
     while True:
         job = Job.from_json(client.recv_bytes().decode())
-        assert (
-            job.suite.version + job.suite.files_digest
-        )  # computed here, so that the children inherit the cached values
+        # Computed here, so that the children inherit the cached values.
+        assert job.suite.version + job.suite.files_digest
         child = os.fork()
         if child == 0:
-            line.take(client)
+            line.set_line(client)
             _work(job, log_file)
         _, status = os.waitpid(child, 0)
         _reap_orphans()
@@ -73,16 +72,16 @@ def _work(job: Job, log_file: Path) -> None:
 
 
 def _reap_orphans() -> None:
-    """Remove the exited processes that a child left. This server is process 1 in its sandbox, so it is their parent."""
+    """Reap the exited processes that a child left. This server is process 1 in its sandbox, so it is their parent."""
     with suppress(ChildProcessError):
         while os.waitpid(-1, os.WNOHANG) != (0, 0):
             pass
 
 
 def main() -> None:
-    """Serve with the folder and descriptor from the command line."""
+    """Serve with the folder and the descriptor that the command line names."""
     worker.prepare()
-    for profile in PROFILES:  # a server started by a child would end with that child
+    for profile in PROFILES:  # a server that a child starts would end with that child
         warm_up(profile)
     PROFILES["tests"].load()  # a worker also needs most of these modules
     gc.collect()

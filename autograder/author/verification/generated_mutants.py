@@ -26,7 +26,7 @@ from autograder.author.verification.ros_operators import is_queue_length, multi_
 from autograder.author.verification.text_operators import text_mutations
 from autograder.suite import suites
 
-PAIRS = 20  # second-order mutants in a chapter
+PAIRS = 20  # the maximum number of second-order mutants in a chapter
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class GeneratedMutant:
     """A mutant of the reference.
 
     Attributes:
-        id: names the file, the function, the operator and a digest of the change; stable when other code changes.
+        id: names the file, the function, the operator and a digest of the change. It is stable when other code changes.
         operator: the operator's name; "pair" for a second-order mutant.
         function: the qualified name of the changed function, or "".
         changes: the replacements in each file, whose path is relative to `solutions/`.
@@ -63,17 +63,17 @@ class GeneratedMutant:
         for file, text in self.texts().items():
             old, new = (course_paths.SOLUTIONS / file).read_text(encoding="utf-8").splitlines(), text.splitlines()
             matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
-            for tag, first, last, new_first, new_last in matcher.get_opcodes():
+            for tag, first, end, new_start, new_end in matcher.get_opcodes():
                 if tag != "equal":
                     diff_lines += [f"{file}:{first + 1}"]
-                    diff_lines += [f"- {line.strip()}" for line in old[first:last]]
-                    diff_lines += [f"+ {line.strip()}" for line in new[new_first:new_last]]
+                    diff_lines += [f"- {line.strip()}" for line in old[first:end]]
+                    diff_lines += [f"+ {line.strip()}" for line in new[new_start:new_end]]
         return "\n".join(diff_lines)
 
 
 @dataclass(frozen=True)
 class GeneratedMutants:
-    """A chapter's mutants, with second-order ones last, and how many were omitted as equivalent or duplicate."""
+    """A chapter's mutants, the second-order ones last, and how many were omitted as equivalents or duplicates."""
 
     mutants: tuple[GeneratedMutant, ...]
     omitted: int
@@ -82,42 +82,46 @@ class GeneratedMutants:
 def generated_mutants(assignment: str) -> GeneratedMutants:
     """Return the mutants of a chapter. They depend only on its reference."""
     mutants: dict[str, GeneratedMutant] = {}
-    omitted = 0
-    for file, functions, given in written_by_students(assignment):
+    omitted_count = 0
+    for file, functions, provided_lines in written_by_students(assignment):
         text = (course_paths.SOLUTIONS / file).read_text(encoding="utf-8")
-        seen = {_meaning(file, text)}
+        meanings = {_meaning_key(file, text)}
         for function, (operator, changes) in mutations(file, text, functions):
-            if given.issuperset(_lines(text.encode(), changes)):
+            if provided_lines.issuperset(_changed_lines(text.encode(), changes)):
                 continue
-            meaning = _meaning(file, replaced(text.encode(), changes).decode())
-            if meaning in seen:
-                omitted += 1
+            meaning = _meaning_key(file, replaced(text.encode(), changes).decode())
+            if meaning in meanings:
+                omitted_count += 1
                 continue
-            seen.add(meaning)
-            mutant = _named(file, function, operator, changes, text)
+            meanings.add(meaning)
+            mutant = _make_mutant(file, function, operator, changes, text)
             assert mutant.id not in mutants, f"two mutants are called {mutant.id}"
             mutants[mutant.id] = mutant
-    return GeneratedMutants((*mutants.values(), *_pairs(list(mutants.values()))), omitted)
+    return GeneratedMutants((*mutants.values(), *_pairs(list(mutants.values()))), omitted_count)
 
 
 def written_by_students(assignment: str) -> Iterator[tuple[str, frozenset[str] | None, frozenset[bytes]]]:
-    """Yield (path, functions, given lines) for each file that students write or correct. None means all functions."""
+    """Yield (path, functions, provided lines) for each file that students write or correct.
+
+    The functions are those that students write; None means all. The provided lines are the lines of the faulty version
+    that students get.
+    """
     packages, chapter = suites.hidden(assignment).sources, Chapter(course_paths.chapter(assignment))
-    copies = [(cell, copied) for cell in chapter.read().cells if (copied := copied_file(cell))]
-    for cell, copied in copies:
-        if is_solution(cell) and copied.source.parts[0] in packages:
-            yield str(copied.source), frozenset(copied.hidden_functions) or None, frozenset()
-    given = chapter.folder / "ws" / "src"
-    written = {copied.source.parts[0] for _, copied in copies}
-    for package in set(packages) - written:  # students get a faulty version and correct it
-        for path in sorted((given / package).rglob("*")):
-            correct = course_paths.SOLUTIONS / path.relative_to(given)
+    copies = [(cell, copy) for cell in chapter.read().cells if (copy := copied_file(cell))]
+    for cell, copy in copies:
+        if is_solution(cell) and copy.source.parts[0] in packages:
+            yield str(copy.source), frozenset(copy.hidden_functions) or None, frozenset()
+    source_folder = chapter.folder / "ws" / "src"
+    written_packages = {copy.source.parts[0] for _, copy in copies}
+    for package in set(packages) - written_packages:  # students get a faulty version and correct it
+        for path in sorted((source_folder / package).rglob("*")):
+            correct = course_paths.SOLUTIONS / path.relative_to(source_folder)
             if correct.is_file() and path.is_file() and correct.read_bytes() != path.read_bytes():
-                yield str(path.relative_to(given)), None, frozenset(path.read_bytes().splitlines())
+                yield str(path.relative_to(source_folder)), None, frozenset(path.read_bytes().splitlines())
 
 
 def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterator[tuple[str, Mutation]]:
-    """Yield (name of the changed function, mutation) for a file."""
+    """Yield (name of the changed function, mutation) for each mutation of a file."""
     if not file.endswith(".py"):
         yield from (("", mutation) for mutation in text_mutations(file, text))
         return
@@ -125,17 +129,19 @@ def mutations(file: str, text: str, functions: frozenset[str] | None) -> Iterato
     nodes: list[ast.AST] = []
     for function, context in nodes_in_context(source, functions):
         nodes.append(context.node)
-        simple = itertools.chain(
+        single_node = itertools.chain(
             () if is_queue_length(context) else classic_mutations(source, context.node), ros_mutations(source, context)
         )
-        yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in simple)
-        wider = itertools.chain(removal_mutations(source, context.node), multi_node_mutations(source, context))
-        yield from ((function, mutation) for mutation in wider)
+        yield from ((function, (name, ((*source.span(node), new),))) for name, node, new in single_node)
+        multi_node = itertools.chain(removal_mutations(source, context.node), multi_node_mutations(source, context))
+        yield from ((function, mutation) for mutation in multi_node)
     yield from (("", mutation) for mutation in wall_time(source, nodes))
 
 
-def _named(file: str, function: str, operator: str, changes: tuple[Replacement, ...], text: str) -> GeneratedMutant:
-    """Name a mutant after the context of its change, so that its name is stable when other lines move."""
+def _make_mutant(
+    file: str, function: str, operator: str, changes: tuple[Replacement, ...], text: str
+) -> GeneratedMutant:
+    """Return a mutant whose id depends on the lines around its change, so that it stays the same when lines move."""
     data = text.encode()
     name_digest = hashlib.sha256(f"{file} {function} {operator}".encode())
     for start, end, new in changes:
@@ -148,36 +154,37 @@ def _named(file: str, function: str, operator: str, changes: tuple[Replacement, 
 
 
 def _pairs(mutants: list[GeneratedMutant]) -> Iterator[GeneratedMutant]:
-    """Yield second-order mutants: pseudo-random pairs of mutants that do not overlap."""
-    ranked = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
-    for first, second in itertools.islice(zip(ranked[::2], ranked[1::2], strict=False), PAIRS):
+    """Yield second-order mutants: pseudo-random pairs of mutants whose changes do not overlap."""
+    shuffled_mutants = sorted(mutants, key=lambda mutant: hashlib.sha256(mutant.id.encode()).digest())
+    for first, second in itertools.islice(zip(shuffled_mutants[::2], shuffled_mutants[1::2], strict=False), PAIRS):
         changes = dict(first.changes)
         for file, replacements in second.changes:
-            combined = sorted((*changes.get(file, ()), *replacements))
-            if any(before[1] > after[0] for before, after in itertools.pairwise(combined)):
+            combined_replacements = sorted((*changes.get(file, ()), *replacements))
+            if any(before[1] > after[0] for before, after in itertools.pairwise(combined_replacements)):
                 break
-            changes[file] = tuple(combined)
+            changes[file] = tuple(combined_replacements)
         else:
             yield GeneratedMutant(f"{first.id} + {second.id}", "pair", first.function, tuple(changes.items()))
 
 
-def _lines(data: bytes, changes: tuple[Replacement, ...]) -> Iterator[bytes]:
+def _changed_lines(data: bytes, changes: tuple[Replacement, ...]) -> Iterator[bytes]:
     """Yield the lines that contain replacements."""
     for start, end, _ in changes:
         last = start + len(data[start:end].rstrip())
         yield from data[data.rfind(b"\n", 0, start) + 1 : data.find(b"\n", last)].splitlines()
 
 
-def _meaning(file: str, text: str) -> object:
-    """Return a key that is equal for texts with the same meaning to the interpreter or the build."""
+def _meaning_key(file: str, text: str) -> object:
+    """Return a key that is equal for texts that the interpreter or the build treats alike."""
     if file.endswith(".py"):
-        return _code(compile(text, file, "exec", optimize=0))
+        return _code_key(compile(text, file, "exec", optimize=0))
     return "\n".join(filter(None, (line.split("#")[0].strip() for line in text.splitlines())))
 
 
-def _code(code: CodeType) -> tuple[object, ...]:
+def _code_key(code: CodeType) -> tuple[object, ...]:
     constants = tuple(
-        _code(each) if isinstance(each, CodeType) else (type(each), repr(each)) for each in code.co_consts
+        _code_key(constant) if isinstance(constant, CodeType) else (type(constant), repr(constant))
+        for constant in code.co_consts
     )
     exception_table = getattr(code, "co_exceptiontable", b"")  # since Python 3.11
     return code.co_code, constants, code.co_names, code.co_varnames, exception_table

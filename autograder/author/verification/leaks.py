@@ -18,11 +18,11 @@ from PIL import Image
 from autograder.probes.leak_markers import markers_in
 
 STOLEN = "STOLEN /"  # an attack's payload prints this before each path that it could read or write
-TEXTS = (".json", ".html", ".ipynb", ".svg", ".csv", ".txt")
-PICTURES = (".png",)
+TEXTS = (".json", ".html", ".ipynb", ".svg", ".csv", ".txt")  # the suffixes of files that contain text
+PICTURES = (".png",)  # the suffixes of pictures, whose metadata may contain text
 _HEX = re.compile(r"(?:[0-9a-fA-F]{2}[ :,-]?){20,}")
 _BASE64 = re.compile(r"[A-Za-z0-9+/_-]{24,}")
-_ID = re.compile(r"\[([^\[\]]{1,8})\]")  # the id of a parametrized test
+_ID = re.compile(r"\[([^\[\]]{1,8})\]")  # the id of a parametrized test case
 _NUMBER = re.compile(r"\b\d{2,3}\b")
 
 
@@ -34,14 +34,16 @@ def hidden_text_in(text: str, lines: Iterable[str] = ()) -> list[str]:
         lines: lines that occur only in hidden files.
     """
     decodings = list(_decodings(text))
-    words = {word for decoding in decodings for word in markers_in(decoding.lower())}
-    letters = {line: _letters(line) for line in lines}
-    words |= {line for line, short in letters.items() if any(line in each or short in each for each in decodings)}
-    return sorted(words)
+    leaked_texts = {word for decoding in decodings for word in markers_in(decoding.lower())}
+    letters_of = {line: _letters(line) for line in lines}
+    for line, letters in letters_of.items():
+        if any(line in decoding or letters in decoding for decoding in decodings):
+            leaked_texts.add(line)
+    return sorted(leaked_texts)
 
 
 def texts_of(folder: Path) -> Iterator[str]:
-    """Yield the names and texts of all files from a grading and its feedback, including the metadata of pictures."""
+    """Yield the names and texts of all files in a folder with a result and its feedback, and the pictures' metadata."""
     for path in sorted(folder.rglob("*")):
         yield path.name
         if path.suffix in TEXTS:
@@ -69,7 +71,7 @@ def _decodings(text: str) -> Iterator[str]:
 
 
 def _letters(text: str) -> str:
-    """Return only the letters, in lower case, because separators may hide a word."""
+    """Return only the letters of a text, in lower case, because separators may hide a word."""
     return "".join(char for char in text.lower() if char.isalpha())
 
 

@@ -1,6 +1,6 @@
-"""Named mutants: copies of the reference solution with one realistic student error each.
+"""Named mutants: copies of the reference solution, each with one realistic error of a student.
 
-A suite's `mutants.yaml` defines the edits of each mutant and the check that should fail. A snapshot beside that file
+A suite's `mutants.yaml` defines the edits of each mutant and the check that it should fail. A snapshot beside that file
 records all checks that the mutant fails, and its diagnosis (`autograder.author.verification.snapshot`).
 """
 
@@ -27,7 +27,7 @@ class Edit:
 
     Attributes:
         file: path of the file, relative to `src`.
-        find: text to replace, which occurs exactly once in the file. None replaces the whole file.
+        find: the text to replace, which occurs exactly once in the file. None means the whole file.
         replace: the new text. None deletes the file.
     """
 
@@ -45,8 +45,8 @@ class Mutant:
         title: a description of the error.
         edits: changes to the reference.
         check: id of the check for which the mutant was written.
-        fails: recorded ids of all checks that do not pass; empty if the mutant has no record.
-        diagnosis: recorded diagnosis of building and starting the programs.
+        fails: the recorded ids of all checks that the mutant does not pass; empty if it has no record.
+        diagnosis: the recorded diagnosis of how the programs were built and started.
         demo: whether `make demo` grades it.
         slow: whether grading it waits for a time-out.
         reason: why it costs much more than its own check, if its result does not explain it; see `costs`.
@@ -67,13 +67,13 @@ def mutants(assignment: str) -> tuple[Mutant, ...]:
     """Return an assignment's mutants.
 
     Raises:
-        CourseError: `mutants.yaml` is not YAML, or breaks its schema.
-        GraderError: it names a check that the suite does not have.
+        CourseError: `mutants.yaml` is not YAML, or violates its schema.
+        GraderError: `mutants.yaml` names a check that the suite does not have.
     """
     suite = suites.hidden(assignment)
     check_ids, records = frozenset(check.id for check in suite.checks), snapshot.recorded(assignment)
     data = load_yaml(suite.folder / "mutants.yaml")
-    return tuple(_mutant(entry, data.get("file", ""), check_ids, records) for entry in data["mutants"])
+    return tuple(_parse_mutant(entry, data.get("file", ""), check_ids, records) for entry in data["mutants"])
 
 
 def write_reference(sources: tuple[str, ...], folder: Path) -> None:
@@ -87,18 +87,18 @@ def write_mutant(mutant: Mutant, sources: tuple[str, ...], folder: Path) -> None
 
     Args:
         mutant: the mutant to write.
-        sources: names of the packages and folders in `solutions/` to copy.
+        sources: the names of the packages and folders of `solutions/` to copy.
         folder: the folder that gets `src`.
 
     Raises:
-        GraderError: the text to replace does not occur exactly once in the reference.
+        GraderError: a text to replace does not occur exactly once in its file.
     """
     write_reference(sources, folder)
     for edit in mutant.edits:
-        _apply(mutant, edit, folder / "src" / edit.file)
+        _apply_edit(mutant, edit, folder / "src" / edit.file)
 
 
-def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
+def _apply_edit(mutant: Mutant, edit: Edit, path: Path) -> None:
     if edit.replace is None:
         path.unlink()
         return
@@ -113,15 +113,15 @@ def _apply(mutant: Mutant, edit: Edit, path: Path) -> None:
     path.write_text(text.replace(edit.find, edit.replace))
 
 
-def _edit(entry: dict[str, Any], file: str) -> Edit:
-    """Read `{find, replace}`, `{write: TEXT}` or `{delete: true}`. `file` is the default for an entry without one."""
+def _parse_edit(entry: dict[str, Any], file: str) -> Edit:
+    """Read `{find, replace}`, `{write: TEXT}` or `{delete: true}`. `file` is the file if the entry names none."""
     file = entry.get("file", file)
     if entry.get("delete"):
         return Edit(file, None, None)
     return Edit(file, None, entry["write"]) if "write" in entry else Edit(file, entry["find"], entry["replace"])
 
 
-def _mutant(entry: dict[str, Any], file: str, check_ids: frozenset[str], records: Mapping[str, Record]) -> Mutant:
+def _parse_mutant(entry: dict[str, Any], file: str, check_ids: frozenset[str], records: Mapping[str, Record]) -> Mutant:
     check = entry.get("check")
     if check not in check_ids:
         raise GraderError(
@@ -131,7 +131,7 @@ def _mutant(entry: dict[str, Any], file: str, check_ids: frozenset[str], records
     return Mutant(
         id=entry["id"],
         title=entry["title"],
-        edits=tuple(_edit(edit, file) for edit in entry["edits"]),
+        edits=tuple(_parse_edit(edit, file) for edit in entry["edits"]),
         check=check,
         fails=record.fails,
         diagnosis=record.diagnosis,

@@ -2,8 +2,8 @@
 
 Three shortcuts reduce the time for a mutant to about a second. If colcon would only copy the changed file, the built
 reference is patched. Checks that only read the sources run before anything is built. Checks that killed earlier mutants
-of the same function run first. Before any mutant, the reference is graded with each shortcut. A shortcut is used only
-for checks that the reference passes with it.
+of the same function run first. Before the first mutant, the reference is graded with a patched build and without a
+build. Each of these shortcuts is used only for checks that the reference passes with it.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ from autograder.run.workspace import Workspace
 from autograder.suite import Outcome, suites
 from autograder.suite.fingerprint import digest
 
-COPIED = (".py", ".yaml")  # suffixes of files that colcon only copies
+COPIED = (".py", ".yaml")  # the suffixes of files that colcon only copies
 NOT_COPIED = ("setup.py",)
-MAX_LIKELY = 3  # checks that run before all others
-FAILED = "not graded"
+MAX_LIKELY = 3  # how many likely killers run before all other checks
+FAILED = "not graded"  # the `killer` of a mutant on which the grader failed
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class MutantResult:
 
     Attributes:
         killer: the check that failed, "" if none did, or FAILED if the grader failed.
-        error: what the grader reported when it failed; the last line of its log.
+        error: the last line of the grader's log if the grader failed.
     """
 
     id: str
@@ -66,8 +66,8 @@ class MutationRun:
 
     Args:
         assignment: the chapter.
-        workers: the pool that grades.
-        seed: seed of every hidden input.
+        workers: the pool that grades the mutants.
+        seed: the seed of all hidden inputs.
         folder: a temporary folder for the built reference.
     """
 
@@ -80,54 +80,54 @@ class MutationRun:
         (folder / "home").mkdir()
         workspace = Workspace(folder / "patched", activate(), folder / "home")
         build_workspace(workspace, self._suite.packages)
-        self.shortcuts = {name: self._passed(folder / name) for name in ("patched", "unbuilt")}
+        self.shortcuts = {name: self._passed_checks(folder / name) for name in ("patched", "unbuilt")}
 
-    def _passed(self, built: Path) -> frozenset[str]:
-        """Return the checks that the reference passes with this workspace instead of a new build."""
-        result = self._grade({}, Options(pictures=False, built=str(built)))
+    def _passed_checks(self, built_workspace: Path) -> frozenset[str]:
+        """Return the checks that the reference passes if this workspace is used instead of a new build."""
+        result = self._grade({}, Options(pictures=False, prebuilt=str(built_workspace)))
         return frozenset(check.id for check in result.checks if check.outcome is Outcome.PASSED)
 
     def run_mutant(self, mutant: GeneratedMutant, version: str = "") -> MutantResult:
         """Grade a mutant until a check fails."""
-        started = time.monotonic()
+        start = time.monotonic()
         try:
             killer, error = next(filter(None, self._stages(mutant)), ""), ""
         except GraderError as failure:
             killer, error = FAILED, str(failure)
-        result = MutantResult(mutant.id, killer, round(time.monotonic() - started, 2), version, error)
+        result = MutantResult(mutant.id, killer, round(time.monotonic() - start, 2), version, error)
         if result.killed:
             for location in {(mutant.file, mutant.function), (mutant.file, "")}:
                 self._killers[location][killer] += 1
         return result
 
     def _stages(self, mutant: GeneratedMutant) -> Iterator[str]:
-        """Yield the killer of each stage, or "". Fast checks and likely killers come first."""
+        """Grade the mutant in stages, fast checks and likely killers first. Yield the killer of each stage, or ""."""
         texts = mutant.texts()
         in_tests = all("/test/" in file for file in texts)
         # The reference's own tests would kill many mutants, but a student has other tests.
-        eligible = frozenset(self._ids).difference(() if in_tests else self._suite.own_tests)
-        copied = all(file.endswith(COPIED) and not file.endswith(NOT_COPIED) for file in texts)
-        shortcut = "patched" if copied else "unbuilt"
-        applicable = self.shortcuts[shortcut] & eligible
-        likely = self._likely(mutant) & applicable if copied else applicable
-        built = str(self._folder / shortcut)
-        if likely:
-            yield self._killer(texts, self._suite.with_dependencies(*likely), built)
-        if copied and applicable - likely:
-            yield self._killer(texts, self._suite.with_dependencies(*applicable), built)
-        if eligible - applicable:
-            yield self._killer(texts, self._suite.with_dependencies(*eligible), "")
+        eligible_checks = frozenset(self._ids).difference(() if in_tests else self._suite.own_tests)
+        is_copied = all(file.endswith(COPIED) and not file.endswith(NOT_COPIED) for file in texts)
+        shortcut = "patched" if is_copied else "unbuilt"
+        applicable_checks = self.shortcuts[shortcut] & eligible_checks
+        likely_killers = self._find_likely_killers(mutant) & applicable_checks if is_copied else applicable_checks
+        prebuilt = str(self._folder / shortcut)
+        if likely_killers:
+            yield self._find_killer(texts, self._suite.with_dependencies(*likely_killers), prebuilt)
+        if is_copied and applicable_checks - likely_killers:
+            yield self._find_killer(texts, self._suite.with_dependencies(*applicable_checks), prebuilt)
+        if eligible_checks - applicable_checks:
+            yield self._find_killer(texts, self._suite.with_dependencies(*eligible_checks), "")
 
-    def _likely(self, mutant: GeneratedMutant) -> frozenset[str]:
+    def _find_likely_killers(self, mutant: GeneratedMutant) -> frozenset[str]:
         killers = self._killers[mutant.file, mutant.function] or self._killers[mutant.file, ""]
         return frozenset(name for name, _ in killers.most_common(MAX_LIKELY))
 
-    def _killer(self, texts: dict[str, str], only: tuple[str, ...], built: str) -> str:
-        result = self._grade(texts, Options(only=only, first_loss=True, pictures=False, built=built))
+    def _find_killer(self, texts: dict[str, str], only: tuple[str, ...], prebuilt: str) -> str:
+        result = self._grade(texts, Options(only=only, exit_first=True, pictures=False, prebuilt=prebuilt))
         if result.unjudged:
             raise GraderError(f"errors in the checks {', '.join(result.unjudged)}")
-        failed = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
-        return failed[0] if failed else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value
+        failed_ids = [check.id for check in result.checks if check.outcome is Outcome.FAILED]
+        return failed_ids[0] if failed_ids else "" if result.diagnosis.kind is Kind.OK else result.diagnosis.kind.value
 
     def _grade(self, texts: dict[str, str], options: Options) -> Result:
         """Grade the reference with some files replaced.
@@ -159,17 +159,17 @@ def run_mutants(
 ) -> tuple[MutantResult, ...]:
     """Grade mutants of a chapter, and return their results.
 
-    `cache` is a file of results. A stored result is reused if suite and reference are unchanged, so that an interrupted
-    run can continue. Each new result is appended to the file and passed to `on_result`.
+    `cache` is a file of results. A stored result is reused if the suite and the reference are unchanged, so that an
+    interrupted run can continue. Each new result is appended to the file and passed to `on_result`.
     """
-    version, chosen = _version(assignment), list(mutants)
+    version, all_mutants = _version(assignment), list(mutants)
     lines = cache.read_text(encoding="utf-8").splitlines() if cache.is_file() else []
-    stored = {
+    stored_results = {
         result.id: result
         for result in (MutantResult(**json.loads(line)) for line in lines)
         if result.version == version
     }
-    missing = [mutant for mutant in chosen if mutant.id not in stored]
+    missing_mutants = [mutant for mutant in all_mutants if mutant.id not in stored_results]
     cache.parent.mkdir(parents=True, exist_ok=True)
     with cache.open("a", encoding="utf-8") as file:
 
@@ -179,19 +179,19 @@ def run_mutants(
                 file.flush()
             on_result(result)
 
-        new: tuple[MutantResult, ...] = ()
-        if missing:
+        new_results: tuple[MutantResult, ...] = ()
+        if missing_mutants:
             with prepared_run(assignment, workers, seed) as run:
-                new = map_parallel(
-                    lambda mutant: run.run_mutant(mutant, version), missing, jobs=workers.count, on_done=append
+                new_results = map_parallel(
+                    lambda mutant: run.run_mutant(mutant, version), missing_mutants, jobs=workers.count, on_done=append
                 )
-    by_id = stored | {result.id: result for result in new}
-    return tuple(by_id[mutant.id] for mutant in chosen)
+    by_id = stored_results | {result.id: result for result in new_results}
+    return tuple(by_id[mutant.id] for mutant in all_mutants)
 
 
 @contextmanager
 def prepared_run(assignment: str, workers: WorkerPool, seed: int) -> Iterator[MutationRun]:
-    """Yield a mutation run of a chapter, with a temporary folder."""
+    """Yield a mutation run of a chapter that uses a temporary folder."""
     with tempfile.TemporaryDirectory(prefix="mutation-run-") as name:
         yield MutationRun(assignment, workers, seed, Path(name))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder import course_paths
 
-CANARY = "CANARY-5b1e"  # a test sets it in the grader's environment
+CANARY = "CANARY-5b1e"  # a secret that a test puts into the grader's environment
 
 # Searches files, processes and memory for secrets, wherever Python runs, and prints them. Overwrites results and code,
 # stops process 1, and tries to reach a network.

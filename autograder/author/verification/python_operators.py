@@ -1,6 +1,6 @@
 """Mutation operators for Python.
 
-They change the text at the positions that `ast` reports, and preserve the rest of it. cosmic-ray and mutmut have only
+They change the text at the positions that `ast` reports, and leave the rest unchanged. cosmic-ray and mutmut have only
 the classic operators, and depend on a parser and a dozen other packages. The ROS operators in `ros_operators.py` need
 the positions from `ast` in any case.
 """
@@ -24,7 +24,7 @@ TEXT_ARGUMENTS = {"description", "additional_constraints", "reason", "msg", "mai
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 Replacement = tuple[int, int, str]  # start and end of the replaced part in UTF-8 bytes, and the new text
-Mutation = tuple[str, tuple[Replacement, ...]]  # the operator and its replacements
+Mutation = tuple[str, tuple[Replacement, ...]]  # the operator, and the replacements that it makes
 NodeMutation = tuple[str, ast.AST, str]  # the operator, the replaced node, and the new text
 
 
@@ -55,7 +55,7 @@ class Source:
 
 
 def replaced(data: bytes, changes: Iterable[Replacement]) -> bytes:
-    """Return a text with some non-overlapping parts replaced."""
+    """Return a text in which some parts, which must not overlap, are replaced."""
     for start, end, new in sorted(changes, reverse=True):
         data = data[:start] + new.encode() + data[end:]
     return data
@@ -79,28 +79,32 @@ def nodes_in_context(source: Source, functions: frozenset[str] | None) -> Iterat
     """
 
     def walk(node: ast.AST, name: str, context: NodeInContext) -> Iterator[tuple[str, NodeInContext]]:
-        inner = NodeInContext(node, (context.node, *context.ancestors), context.function)
+        inner_context = NodeInContext(node, (context.node, *context.ancestors), context.function)
         if isinstance(node, (*FUNCTIONS, ast.ClassDef)):
             name = f"{name}.{node.name}".lstrip(".")
             function = node if isinstance(node, FUNCTIONS) else None
-            inner = NodeInContext(node, inner.ancestors, function or context.function)
-            if function and functions is not None and not any(f"{name}.".startswith(f"{own}.") for own in functions):
+            inner_context = NodeInContext(node, inner_context.ancestors, function or context.function)
+            if (
+                function
+                and functions is not None
+                and not any(f"{name}.".startswith(f"{written_function}.") for written_function in functions)
+            ):
                 return
         elif _is_not_mutated(node, context):
             return
-        yield name, inner
+        yield name, inner_context
         for field, value in ast.iter_fields(node):
             if field not in ("annotation", "returns", "ctx"):
                 for child in value if isinstance(value, list) else [value]:
                     if isinstance(child, ast.AST):
-                        yield from walk(child, name, inner)
+                        yield from walk(child, name, inner_context)
 
     for statement in source.tree.body:
         yield from walk(statement, "", NodeInContext(source.tree, (), None))
 
 
 def _is_not_mutated(node: ast.AST, context: NodeInContext) -> bool:
-    """Return whether a node does not affect execution, or only contains text for people."""
+    """Return whether a node does not affect execution, or contains only text for people."""
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return True  # a docstring
     if isinstance(node, ast.Import | ast.ImportFrom | ast.JoinedStr):
@@ -124,13 +128,13 @@ def classic_mutations(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
 def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Compare):
         operands = [source.text(operand) for operand in (node.left, *node.comparators)]
-        for changed, old in enumerate(node.ops):
+        for changed_index, old in enumerate(node.ops):
             for name, table in (("boundary", BOUNDARY), ("negated", OPPOSITE)):
                 symbols = [SYMBOLS[type(op)] for op in node.ops]
                 if (symbol := SYMBOLS[type(old)]) in table:
-                    symbols[changed] = table[symbol]
-                    rest = (f" {symbol} {operand}" for symbol, operand in zip(symbols, operands[1:], strict=True))
-                    yield name, node, f"({operands[0]}{''.join(rest)})"
+                    symbols[changed_index] = table[symbol]
+                    pairs = (f" {symbol} {operand}" for symbol, operand in zip(symbols, operands[1:], strict=True))
+                    yield name, node, f"({operands[0]}{''.join(pairs)})"
     elif isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC:
         new = ARITHMETIC[type(node.op)][1]
         yield "arithmetic", node, f"(({source.text(node.left)}) {new} ({source.text(node.right)}))"
@@ -139,8 +143,8 @@ def _operators(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     elif isinstance(node, ast.BoolOp):
         word = " or " if isinstance(node.op, ast.And) else " and "
         yield "boolean", node, f"({word.join(f'({source.text(value)})' for value in node.values)})"
-        for removed in range(len(node.values)):
-            operands = [f"({source.text(value)})" for index, value in enumerate(node.values) if index != removed]
+        for removed_index in range(len(node.values)):
+            operands = [f"({source.text(value)})" for index, value in enumerate(node.values) if index != removed_index]
             word = " and " if isinstance(node.op, ast.And) else " or "
             yield "boolean", node, f"({word.join(operands)})"
 
@@ -190,8 +194,8 @@ def _statements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     elif isinstance(node, ast.Assign | ast.AugAssign):
         target = node.targets[0] if isinstance(node, ast.Assign) else node.target
         owner = getattr(getattr(target, "value", None), "id", "self")
-        of_message = isinstance(target, ast.Attribute) and (owner != "self" or isinstance(target.value, ast.Attribute))
-        yield "no field" if of_message else "no assignment", node, "pass"
+        is_field = isinstance(target, ast.Attribute) and (owner != "self" or isinstance(target.value, ast.Attribute))
+        yield "no field" if is_field else "no assignment", node, "pass"
     elif isinstance(node, ast.Return):
         yield "no return", node, "return None" if node.value else "pass"
     elif isinstance(node, ast.Raise | ast.Assert | ast.Break | ast.Continue | ast.Delete):
@@ -211,8 +215,8 @@ def _arguments(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
         return
     positional = [source.text(argument) for argument in node.args]
     keywords = [
-        f"{each.arg}={source.text(each.value)}" if each.arg else f"**{source.text(each.value)}"
-        for each in node.keywords
+        f"{keyword.arg}={source.text(keyword.value)}" if keyword.arg else f"**{source.text(keyword.value)}"
+        for keyword in node.keywords
     ]
     function = source.text(node.func)
     if isinstance(node.func, ast.Attribute) and node.func.attr in LEVELS:
@@ -220,16 +224,21 @@ def _arguments(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
         yield "log level", node, f"{level}({', '.join(positional + keywords)})"
     elif not any(isinstance(argument, ast.Starred) for argument in node.args):
         for index in range(len(positional) - 1):
-            swapped = [*positional[:index], positional[index + 1], positional[index], *positional[index + 2 :]]
-            yield "arguments", node, f"{function}({', '.join(swapped + keywords)})"
+            swapped_arguments = [
+                *positional[:index],
+                positional[index + 1],
+                positional[index],
+                *positional[index + 2 :],
+            ]
+            yield "arguments", node, f"{function}({', '.join(swapped_arguments + keywords)})"
 
 
 def _elements(source: Source, node: ast.AST) -> Iterator[NodeMutation]:
     if isinstance(node, ast.Tuple) and isinstance(node.ctx, ast.Load):
         elements = [source.text(element) for element in node.elts]
         for index in range(len(elements)):
-            rest = "".join(f"{element}, " for element in elements[:index] + elements[index + 1 :])
-            yield "element", node, f"({rest})"
+            remaining_elements = "".join(f"{element}, " for element in elements[:index] + elements[index + 1 :])
+            yield "element", node, f"({remaining_elements})"
 
 
 def removal_mutations(source: Source, node: ast.AST) -> Iterator[Mutation]:
@@ -237,9 +246,10 @@ def removal_mutations(source: Source, node: ast.AST) -> Iterator[Mutation]:
     parts: list[tuple[ast.AST, ast.AST]] = []
     if isinstance(node, ast.Call):
         arguments: list[ast.expr | ast.keyword] = [*node.args, *node.keywords]
-        parts = [(each, each) for each in sorted(arguments, key=lambda each: (each.lineno, each.col_offset))]
+        arguments.sort(key=lambda argument: (argument.lineno, argument.col_offset))
+        parts = [(argument, argument) for argument in arguments]
     elif isinstance(node, ast.List):
-        parts = [(each, each) for each in node.elts]
+        parts = [(element, element) for element in node.elts]
     elif isinstance(node, ast.Dict) and None not in node.keys:
         parts = [(key, value) for key, value in zip(node.keys, node.values, strict=True) if key is not None]
     spans = [source.span(*part) for part in parts]

@@ -19,19 +19,23 @@ def record_failures(assignment: str, verdicts: Iterable[Verdict]) -> str:
     A mutant that passes the check for which it was written proves nothing, so its result is not recorded.
     """
     written_for = {mutant.id: mutant.check for mutant in mutants(assignment)}
-    observed = {
+    observed_records = {
         verdict.name: Record(failed_checks(verdict.result), verdict.result.diagnosis.kind)
         for verdict in verdicts
         if verdict.assignment == assignment and _is_recordable(verdict)
     }
-    useless = sorted(name for name, record in observed.items() if written_for[name] not in record.fails)
-    before = snapshot.recorded(assignment)
-    updated = before | {name: record for name, record in observed.items() if name not in useless}
-    after = {name: updated[name] for name in written_for if name in updated}
-    snapshot.write(assignment, after)
-    changed = sum(before.get(name) != after.get(name) for name in before | after)
-    text = f"{assignment}: {len(observed)} mutants graded, {changed} records changed"
-    return text + (f"; not recorded, because they pass their own check: {', '.join(useless)}" if useless else "")
+    useless_mutants = sorted(name for name, record in observed_records.items() if written_for[name] not in record.fails)
+    old_records = snapshot.recorded(assignment)
+    merged_records = old_records | {
+        name: record for name, record in observed_records.items() if name not in useless_mutants
+    }
+    new_records = {name: merged_records[name] for name in written_for if name in merged_records}
+    snapshot.write(assignment, new_records)
+    change_count = sum(old_records.get(name) != new_records.get(name) for name in old_records | new_records)
+    text = f"{assignment}: {len(observed_records)} mutants graded, {change_count} records changed"
+    return text + (
+        f"; not recorded, because they pass their own check: {', '.join(useless_mutants)}" if useless_mutants else ""
+    )
 
 
 def compare_again(verdicts: Iterable[Verdict]) -> tuple[Verdict, ...]:
@@ -52,5 +56,5 @@ def compare_again(verdicts: Iterable[Verdict]) -> tuple[Verdict, ...]:
 
 def _is_recordable(verdict: Verdict) -> bool:
     """Return whether a verdict belongs to a named mutant that was graded by every check."""
-    graded = verdict.result.status is Status.GRADED and not verdict.result.unjudged
-    return verdict.kind is CaseKind.MUTANT and graded
+    is_graded = verdict.result.status is Status.GRADED and not verdict.result.unjudged
+    return verdict.kind is CaseKind.MUTANT and is_graded

@@ -32,7 +32,7 @@ def ros_mutations(source: Source, context: NodeInContext) -> Iterator[NodeMutati
     elif isinstance(node, ast.Call):
         yield from _calls(source, node, context)
     elif isinstance(node, ast.Assign) and len(node.targets) == 1:
-        arguments = [each.arg for each in context.function.args.args[1:]] if context.function else []
+        arguments = [argument.arg for argument in context.function.args.args[1:]] if context.function else []
         if source.text(node.value) == "self.get_clock().now()" and len(arguments) == 1:
             yield "stamp", node.value, FROM_HEADER.format(arguments[0])
 
@@ -40,8 +40,8 @@ def ros_mutations(source: Source, context: NodeInContext) -> Iterator[NodeMutati
 def _names(source: Source, node: ast.Attribute | ast.Name, context: NodeInContext) -> Iterator[NodeMutation]:
     name = node.attr if isinstance(node, ast.Attribute) else node.id
     text = source.text(node)
-    called = isinstance(context.ancestors[0], ast.Call) and context.ancestors[0].func is node
-    if name in SWAPPED and (isinstance(node, ast.Attribute) or called):
+    is_called = isinstance(context.ancestors[0], ast.Call) and context.ancestors[0].func is node
+    if name in SWAPPED and (isinstance(node, ast.Attribute) or is_called):
         yield "swapped", node, text[: -len(name)] + SWAPPED[name]
     if not isinstance(node, ast.Attribute) or not isinstance(node.ctx, ast.Load):
         return
@@ -64,7 +64,7 @@ def _calls(source: Source, node: ast.Call, context: NodeInContext) -> Iterator[N
         new = ["10"] if source.text(qos) == SENSOR_DATA else []
         if isinstance(qos, ast.Constant):
             new = ["1", f"{QOS}{SENSOR_DATA}", LATCHED]
-        yield from (("qos", qos, each) for each in new)
+        yield from (("qos", qos, replacement) for replacement in new)
     if name == "create_timer":
         yield "wall time", node, f"{text[:-1].rstrip().rstrip(',')}, clock={STEADY_CLOCK})"
     if text == NOW:
@@ -72,12 +72,12 @@ def _calls(source: Source, node: ast.Call, context: NodeInContext) -> Iterator[N
 
 
 def is_queue_length(context: NodeInContext) -> bool:
-    """Return whether a node is a queue length, for which the operator "qos" makes the relevant mutations."""
+    """Return whether a node is a queue length. The operator "qos" makes the relevant mutations of queue lengths."""
     outer = context.ancestors[0]
     if isinstance(outer, ast.keyword):
         return outer.arg == "depth"
-    at = QOS_POSITION.get(getattr(getattr(outer, "func", None), "attr", ""), -1)
-    return isinstance(outer, ast.Call) and len(outer.args) > at >= 0 and outer.args[at] is context.node
+    position = QOS_POSITION.get(getattr(getattr(outer, "func", None), "attr", ""), -1)
+    return isinstance(outer, ast.Call) and len(outer.args) > position >= 0 and outer.args[position] is context.node
 
 
 def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Mutation]:
@@ -96,7 +96,7 @@ def multi_node_mutations(source: Source, context: NodeInContext) -> Iterator[Mut
 
 
 def wall_time(source: Source, nodes: list[ast.AST]) -> Iterator[Mutation]:
-    """Yield a mutation that replaces the ROS clock by the machine's clock in all of these nodes of a module."""
+    """Yield a mutation that replaces the ROS clock with the machine's clock wherever these nodes use it."""
     clocks = [node for node in nodes if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "get_clock"]
     if clocks:
         yield "wall time", tuple((*source.span(node), SYSTEM_CLOCK) for node in clocks)

@@ -15,25 +15,29 @@ def summary(verdicts: Sequence[Verdict], seconds: float) -> dict[str, object]:
     mutants that failed no check. `mutants_wrong_check` counts those whose failed checks or diagnosis differ from the
     snapshot.
     """
-    mutants = _of(verdicts, CaseKind.MUTANT)
-    missed = [each for each in mutants if not (each.result.status is Status.GRADED and failed_checks(each.result))]
-    attacks = _of(verdicts, CaseKind.ATTACK)
+    mutants = _of_kind(verdicts, CaseKind.MUTANT)
+    missed_mutants = [
+        verdict
+        for verdict in mutants
+        if verdict.result.status is not Status.GRADED or not failed_checks(verdict.result)
+    ]
+    attacks = _of_kind(verdicts, CaseKind.ATTACK)
     return {
         "reference": min(_percents(verdicts, CaseKind.REFERENCE), default=None),
         "release": max(_percents(verdicts, CaseKind.RELEASE), default=None),
         "variants": _percents(verdicts, CaseKind.VARIANT),
         "mutants": len(mutants),
-        "mutants_missed": len(missed),
-        "mutants_wrong_check": sum(not verdict.is_expected for verdict in mutants if verdict not in missed),
+        "mutants_missed": len(missed_mutants),
+        "mutants_wrong_check": sum(not verdict.is_expected for verdict in mutants if verdict not in missed_mutants),
         "attacks": len(attacks),
         "attacks_gained": sum(not verdict.is_expected for verdict in attacks),
         "seconds": round(seconds, 1),
     }
 
 
-def _of(verdicts: Iterable[Verdict], kind: CaseKind) -> list[Verdict]:
+def _of_kind(verdicts: Iterable[Verdict], kind: CaseKind) -> list[Verdict]:
     return [verdict for verdict in verdicts if verdict.kind is kind]
 
 
 def _percents(verdicts: Iterable[Verdict], kind: CaseKind) -> list[float]:
-    return [verdict.result.percent for verdict in _of(verdicts, kind)]
+    return [verdict.result.percent for verdict in _of_kind(verdicts, kind)]

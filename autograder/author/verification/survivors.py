@@ -1,6 +1,6 @@
 """Counts and reports the results of generated mutants. Survivors, which no check kills, need a reason.
 
-`survivors.yaml` contains the reasons, of two kinds. The report lists all survivors, with or without a reason.
+`survivors.yaml` contains two kinds of reasons. The report lists all survivors, with or without a reason.
 
     - equivalent: why no input can reveal a difference from the reference
       mutants: [the ids]
@@ -23,7 +23,7 @@ from autograder.exceptions import GraderError
 from autograder.suite import suites
 
 KINDS = ("equivalent", "outside")
-MIN_KILLED, MIN_KILLED_OF_ALL = 0.95, 0.97  # mutation scores of a chapter, and of all chapters
+MIN_KILLED, MIN_KILLED_OF_ALL = 0.95, 0.97  # the lowest acceptable scores of one chapter, and of all chapters together
 HEAD = """# Generated mutants
 
 Each operator is applied wherever it matches in the files that students write, and each mutant is graded until a check
@@ -33,7 +33,7 @@ count as not killed. Mutants omitted before grading, because they are equivalent
 
 @dataclass(frozen=True)
 class ChapterMutationResult:
-    """A chapter's generated mutants, the reasons of its survivors, and the results."""
+    """A chapter's generated mutants, the reasons why mutants may survive, and the results."""
 
     assignment: str
     generated: GeneratedMutants
@@ -47,12 +47,12 @@ class ChapterMutationResult:
 
     @property
     def killed(self) -> int:
-        """How many mutants a check killed."""
+        """The number of mutants that a check killed."""
         return len(self.results) - len(self.survivors)
 
     @property
     def killable(self) -> int:
-        """How many mutants were graded, except survivors that are equivalent to the reference."""
+        """The number of graded mutants, except survivors that are equivalent to the reference."""
         return len(self.results) - sum(reason.startswith("equivalent: ") for reason in self.survivors.values())
 
     @property
@@ -67,11 +67,11 @@ class ChapterMutationResult:
 
 
 def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
-    """Return the reasons why generated mutants of a chapter may survive, by their ids.
+    """Return the reasons why generated mutants of a chapter may survive, by id.
 
     Raises:
-        CourseError: the file is not YAML, or breaks its schema.
-        GraderError: a mutant does not exist, or has two reasons.
+        CourseError: `survivors.yaml` is not YAML, or violates its schema.
+        GraderError: `survivors.yaml` names a mutant that does not exist, or gives two reasons for one mutant.
     """
     path = suites.hidden(assignment).folder / "survivors.yaml"
     entries = (load_yaml(path) if path.is_file() else None) or []
@@ -85,47 +85,50 @@ def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
         pair_reasons = [by_mutant[name] for name in pair.split(" + ") if name in by_mutant]
         if len(pair_reasons) == 2:  # then the pair may also survive; "outside" outweighs "equivalent"
             by_mutant.setdefault(pair, max(pair_reasons, key=lambda reason: reason.startswith("outside")))
-    if outdated := by_mutant.keys() - {mutant.id for mutant in generated.mutants}:
-        raise GraderError(f"{path}: these mutants no longer exist: {', '.join(sorted(outdated))}")
+    if outdated_mutants := by_mutant.keys() - {mutant.id for mutant in generated.mutants}:
+        raise GraderError(f"{path}: these mutants no longer exist: {', '.join(sorted(outdated_mutants))}")
     return by_mutant
 
 
 def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
-    """Return a sentence for each mutant without a result or a reason, and for each score that is too low.
+    """Return a sentence for each mutant on which the grader failed, each unexplained survivor, and each low score.
 
-    A diff follows the sentence of a mutant without a reason, because the id does not show the change. A score is only
-    judged if all mutants of the chapter, or of all chapters, were graded.
+    The diff of an unexplained survivor follows its sentence, because the id does not show the change. A score is judged
+    only if all mutants of the chapter, or of all chapters, were graded.
     """
     sentences = [
-        f"{each.assignment}: the grader failed on {name}: {error}"
-        for each in chapters
-        for name, error in each.failed.items()
+        f"{chapter.assignment}: the grader failed on {name}: {error}"
+        for chapter in chapters
+        for name, error in chapter.failed.items()
     ]
-    for each in chapters:
-        diffs = {mutant.id: mutant.diff for mutant in each.generated.mutants}
+    for chapter in chapters:
+        diffs = {mutant.id: mutant.diff for mutant in chapter.generated.mutants}
         sentences += [
-            f"{each.assignment}: {name} survives without a reason\n{textwrap.indent(diffs[name](), '    ')}"
-            for name in each.unexplained
+            f"{chapter.assignment}: {name} survives without a reason\n{textwrap.indent(diffs[name](), '    ')}"
+            for name in chapter.unexplained
         ]
-    complete = [each for each in chapters if len(each.results) == len(each.generated.mutants)]
-    scores = [(each.assignment, each.killed, each.killable, MIN_KILLED) for each in complete]
-    if {each.assignment for each in complete} == set(suites.graded_assignments()):
-        killed, killable = sum(each.killed for each in complete), sum(each.killable for each in complete)
+    complete_chapters = [chapter for chapter in chapters if len(chapter.results) == len(chapter.generated.mutants)]
+    scores = [(chapter.assignment, chapter.killed, chapter.killable, MIN_KILLED) for chapter in complete_chapters]
+    if {chapter.assignment for chapter in complete_chapters} == set(suites.graded_assignments()):
+        killed, killable = (
+            sum(chapter.killed for chapter in complete_chapters),
+            sum(chapter.killable for chapter in complete_chapters),
+        )
         scores.append(("all chapters", killed, killable, MIN_KILLED_OF_ALL))
     return sentences + [
-        f"{name}: {killed} of {killable} mutants fail a check, but at least {required:.0%} must"
-        for name, killed, killable, required in scores
-        if killed < required * killable
+        f"{name}: {killed} of {killable} mutants fail a check, but at least {min_score:.0%} must"
+        for name, killed, killable, min_score in scores
+        if killed < min_score * killable
     ]
 
 
 def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[str, list[int]]]:
-    """Return the counts [killed, all] by chapter and operator."""
+    """Return the counts [killed mutants, all mutants] for each operator of each chapter."""
     counts: dict[str, dict[str, list[int]]] = {}
-    for each in chapters:
-        operators = {mutant.id: mutant.operator for mutant in each.generated.mutants}
-        by_operator = counts[each.assignment] = defaultdict(lambda: [0, 0])
-        for result in each.results:
+    for chapter in chapters:
+        operators = {mutant.id: mutant.operator for mutant in chapter.generated.mutants}
+        by_operator = counts[chapter.assignment] = defaultdict(lambda: [0, 0])
+        for result in chapter.results:
             for count in (by_operator[operators[result.id]], by_operator["all"]):
                 count[0] += result.killed
                 count[1] += 1
@@ -134,8 +137,8 @@ def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[s
 
 def report(chapters: Sequence[ChapterMutationResult]) -> str:
     """Return a Markdown table of chapters and operators, followed by all survivors with their diffs."""
-    omitted = sum(each.generated.omitted for each in chapters)
-    return "\n".join([f"{HEAD}{omitted}.\n", *_table(chapters), *_survivors(chapters)])
+    omitted_count = sum(chapter.generated.omitted for chapter in chapters)
+    return "\n".join([f"{HEAD}{omitted_count}.\n", *_table(chapters), *_survivors(chapters)])
 
 
 def _table(chapters: Sequence[ChapterMutationResult]) -> Iterator[str]:
@@ -146,15 +149,15 @@ def _table(chapters: Sequence[ChapterMutationResult]) -> Iterator[str]:
         cells = [chapter.get(operator, [0, 0]) for chapter in counts.values()]
         cells.insert(0, [sum(cell[i] for cell in cells) for i in (0, 1)])
         rows.append((operator, *(f"{killed}/{total}" if total else "" for killed, total in cells)))
-    scores = [(each.killed, each.killable) for each in chapters]
+    scores = [(chapter.killed, chapter.killable) for chapter in chapters]
     scores.insert(0, (sum(killed for killed, _ in scores), sum(killable for _, killable in scores)))
     rows.append(("without equivalent ones", *(f"{killed}/{killable}" for killed, killable in scores)))
     yield from table(("operator", "all", *(name[:2] for name in counts)), rows)
 
 
 def _survivors(chapters: Iterable[ChapterMutationResult]) -> Iterator[str]:
-    for each in chapters:
-        mutants = {mutant.id: mutant for mutant in each.generated.mutants}
-        yield f"## {each.assignment}: {len(each.survivors)} of {len(each.results)} survive\n"
-        for name, reason in each.survivors.items():
+    for chapter in chapters:
+        mutants = {mutant.id: mutant for mutant in chapter.generated.mutants}
+        yield f"## {chapter.assignment}: {len(chapter.survivors)} of {len(chapter.results)} survive\n"
+        for name, reason in chapter.survivors.items():
             yield f"`{name}`: {reason or '**no reason**'}\n\n```diff\n{mutants[name].diff()}\n```\n"

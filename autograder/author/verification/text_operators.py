@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from autograder.author.verification.python_operators import Mutation, numbers
 
+# Each type of a field, and the type that replaces it; below, the same for the tags of manifests.
 TYPES = {
     "float64": "float32",
     "float32": "float64",
@@ -22,13 +23,14 @@ DEFINITION = re.compile(r"(?P<type>[a-z_0-9A-Z/]+)(?P<bound>\[[^]]*\]|<=\d+)?(?P
 NAME_VALUE = re.compile(r">(?P<value>[^<>\n]+)</|=(?P<attribute>\"[^\"\n]*)\"")
 TAG = re.compile(r"<(?P<tag>\w+)>(?P<text>[^<>\n]+)</(?P=tag)>")
 WORD = re.compile(r"[\w./${}-]+")
-SKIPPED_TAGS = ("<description>", "<maintainer", "<?xml")  # for people, or for tools that students do not run
+# The text of these tags is for people, or for tools that students do not run.
+SKIPPED_TAGS = ("<description>", "<maintainer", "<?xml")
 
 
 def text_mutations(file: str, text: str) -> Iterator[Mutation]:
     """Yield the mutations of a text, depending on its file type. Offsets are in bytes."""
     offset = 0
-    previous: tuple[int, str] | None = None  # the offset and text of the previous line
+    previous_line: tuple[int, str] | None = None  # the offset and text of the previous line
     for line in text.splitlines(keepends=True):
         code = line if file.endswith((".xml", ".cfg")) else line.split("#")[0].rstrip() + "\n"
         if code.strip() and not line.startswith(SKIPPED_TAGS, len(line) - len(line.lstrip())):
@@ -36,15 +38,15 @@ def text_mutations(file: str, text: str) -> Iterator[Mutation]:
             for name, start, end, new in _in_line(file, code):
                 begin = offset + len(code[:start].encode())
                 yield name, ((begin, begin + len(code[start:end].encode()), new),)
-            if previous and file.endswith((".msg", ".srv", ".action")):
-                swapped = line + previous[1]
-                yield "line order", ((previous[0], offset + len(line.encode()), swapped),)
-            previous = offset, line
+            if previous_line and file.endswith((".msg", ".srv", ".action")):
+                swapped_lines = line + previous_line[1]
+                yield "line order", ((previous_line[0], offset + len(line.encode()), swapped_lines),)
+            previous_line = offset, line
         offset += len(line.encode())
 
 
 def _in_line(file: str, line: str) -> Iterator[tuple[str, int, int, str]]:
-    """Yield (operator, start, end, new text) for a line."""
+    """Yield (operator, start, end, new text) for each mutation of a line."""
     if file.endswith((".msg", ".srv", ".action")):
         yield from _in_definition(line)
     elif file.endswith(".xml"):
@@ -84,7 +86,7 @@ def _in_definition(line: str) -> Iterator[tuple[str, int, int, str]]:
 def _numbers(text: str, offset: int) -> Iterator[tuple[str, int, int, str]]:
     for match in NUMBER.finditer(text):
         value = float(match[0]) if "." in match[0] else int(match[0])
-        negative = text[: match.start()].rstrip().endswith("-")
+        is_negative = text[: match.start()].rstrip().endswith("-")
         for name, new in numbers(value):
-            if not (negative and new.startswith("(")):
+            if not (is_negative and new.startswith("(")):
                 yield name, offset + match.start(), offset + match.end(), new.strip("()")

@@ -20,7 +20,7 @@ from autograder.result.model import Result
 from autograder.suite import Outcome, suites
 
 RECORD = "`autograder verify --record`"
-# Diagnoses of a broken release. A suite may let students begin with packages that do not build.
+# With one of these diagnoses, a release is broken. It may fail to build only if its suite permits this.
 BROKEN = {
     *(Kind.UNSAFE_ARCHIVE, Kind.UNREADABLE, Kind.UNCLEAR, Kind.NOTHING_SUBMITTED, Kind.NOTEBOOK_FAILED),
     Kind.RESERVED_NAME,
@@ -60,19 +60,19 @@ class Verdict:
 
 
 def verify_full_marks(result: Result) -> str:
-    """Describe why a correct answer does not have every point."""
+    """Describe why a correct answer does not have full marks, or return an empty string."""
     if result.diagnosis.kind is not Kind.OK:
         return result.diagnosis.sentence
-    missing = failed_checks(result)
-    return f"fails {', '.join(sorted(missing))}" if missing else ""
+    failed_ids = failed_checks(result)
+    return f"fails {', '.join(sorted(failed_ids))}" if failed_ids else ""
 
 
 def verify_zero(result: Result) -> str:
-    """Describe why an untouched student release does not have 0 points, or has them because it is broken."""
+    """Describe why an untouched student release scores points or is broken, or return an empty string."""
     if result.score:
         return f"it scores {result.score:g}"
-    broken = BROKEN if suites.hidden(result.assignment).build_may_fail else BROKEN | NOT_BUILT
-    return f"students get it broken: {result.diagnosis.sentence}" if result.diagnosis.kind in broken else ""
+    diagnoses_findings = BROKEN if suites.hidden(result.assignment).build_may_fail else BROKEN | NOT_BUILT
+    return f"students get it broken: {result.diagnosis.sentence}" if result.diagnosis.kind in diagnoses_findings else ""
 
 
 def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozenset()) -> str:
@@ -86,16 +86,20 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
         only: ids of the checks that were run; empty means every check. The diagnosis is compared only if every check
             was run, because any of them may have caused it.
     """
-    failed, recorded, run = failed_checks(result), mutant.fails, only or {check.id for check in result.checks}
+    failed_ids, recorded_ids, graded_ids = (
+        failed_checks(result),
+        mutant.fails,
+        only or {check.id for check in result.checks},
+    )
     differences = []
-    if mutant.check in run - failed:
+    if mutant.check in graded_ids - failed_ids:
         differences.append(f"passes {mutant.check}, for which it was written")
-    if not recorded:
+    if not recorded_ids:
         differences.append(f"has no recorded failures: {RECORD} writes them")
     else:
-        failed, recorded = failed & run, recorded & run
-        changes = [f"also fails {', '.join(sorted(failed - recorded))}"] if failed - recorded else []
-        changes += [f"passes {', '.join(sorted(recorded - failed))}"] if recorded - failed else []
+        failed_ids, recorded_ids = failed_ids & graded_ids, recorded_ids & graded_ids
+        changes = [f"also fails {', '.join(sorted(failed_ids - recorded_ids))}"] if failed_ids - recorded_ids else []
+        changes += [f"passes {', '.join(sorted(recorded_ids - failed_ids))}"] if recorded_ids - failed_ids else []
         if changes:
             differences.append(f"{'; '.join(changes)} (if this is correct, {RECORD} updates the snapshot)")
     if not only and result.diagnosis.kind is not mutant.diagnosis:
@@ -113,8 +117,8 @@ class Attack:
     """A malicious submission: a description of the attacks that it combines, and a function that writes it to a folder.
 
     `fails` names the checks that it must fail, with or without the payload. If `exactly` is set, the payload must not
-    make any other check fail. The result must have one of the diagnoses; none means any. If every check was run, the
-    first sentence that a student reads must contain the text `says`.
+    make any other check fail. The result must have one of the diagnoses in `diagnosis`; an empty set means any. If
+    every check was run, the first sentence that a student reads must contain the text `says`.
     """
 
     id: str
@@ -126,18 +130,18 @@ class Attack:
     says: str = ""
 
     def verify(self, result: Result, only: frozenset[str] = frozenset()) -> str:
-        """Describe any gain or interference of the attack, or return an empty string.
+        """Describe what the attack gains or disturbs, or return an empty string.
 
         Args:
-            result: result of the attack.
+            result: the result of the attack.
             only: ids of the checks that were run; empty means every check.
         """
         suite = suites.hidden(result.assignment)
-        run = only or frozenset(check.id for check in suite.checks)
-        failed, expected = failed_checks(result) & run, self.fails & run
-        problems = [f"gains {', '.join(sorted(expected - failed))}"] if expected - failed else []
-        if self.exactly and failed != expected:
-            problems.append(f"disturbs {', '.join(sorted(failed - expected))}")
+        graded_ids = only or frozenset(check.id for check in suite.checks)
+        failed_ids, expected_ids = failed_checks(result) & graded_ids, self.fails & graded_ids
+        problems = [f"gains {', '.join(sorted(expected_ids - failed_ids))}"] if expected_ids - failed_ids else []
+        if self.exactly and failed_ids != expected_ids:
+            problems.append(f"disturbs {', '.join(sorted(failed_ids - expected_ids))}")
         if result.max_score != suite.max_score:
             problems.append(f"changes the maximum to {result.max_score:g}")
         if self.diagnosis and result.diagnosis.kind not in self.diagnosis:
@@ -156,17 +160,17 @@ def first_sentence(result: Result) -> str:
 
 
 def leaked_lines(result: Result) -> list[str]:
-    """Return the lines of hidden checks that appear in a result, and the marker that payloads print after a theft."""
-    text = "\n".join(_texts(result.to_json()))
+    """Return the hidden lines that appear in a result, and the marker of a theft if a payload printed it."""
+    text = "\n".join(_strings_in(result.to_json()))
     return sorted(line for line in {STOLEN, *hidden_lines(result.assignment)} if line in text)
 
 
-def _texts(value: object) -> Iterator[str]:
+def _strings_in(value: object) -> Iterator[str]:
     """Yield every string in JSON data."""
     if isinstance(value, str):
         yield value
     for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
-        yield from _texts(part)
+        yield from _strings_in(part)
 
 
 @cache

@@ -13,9 +13,9 @@ from autograder.author.verification.check_errors import errors_in_checks
 from autograder.author.verification.leaks import hidden_text_in, texts_of
 from autograder.author.verification.verdicts import CaseKind, Verdict, hidden_lines
 from autograder.author.verification.worker_pool import WorkerPool
-from autograder.grade.batch import stored
+from autograder.grade.batch import stored_result
 from autograder.grade.job import Job
-from autograder.grade.own_sandbox import in_own_sandbox
+from autograder.grade.own_sandbox import run_in_own_sandbox
 from autograder.grade.parallel import map_parallel
 from autograder.grade.pipeline import grade_submission
 from autograder.grade.store import LOG
@@ -23,7 +23,7 @@ from autograder.report import feedback
 from autograder.result.model import Result, Status
 
 SUBMISSION = "submission"
-PARTIAL = "part"  # folder for the result of a partial suite
+PARTIAL = "part"  # the folder for the result if only a part of the suite was run
 
 
 def verify_cases(
@@ -38,11 +38,11 @@ def verify_cases(
 
     Args:
         cases: test cases of one or several assignments, from the module `cases`.
-        seed: seed of every hidden input.
-        out: folder of the results; each result goes to `out`/ASSIGNMENT/NAME. A stored result is reused if the whole
-            suite was run, and submission, seed and grader files are unchanged.
-        workers: the pool that grades.
-        on_verdict: function that is called with each verdict as soon as it is known, in any order.
+        seed: the seed of all hidden inputs.
+        out: the folder for the results; each result goes to `out`/ASSIGNMENT/NAME. A stored result is reused if the
+            whole suite was run, and the submission, the seed and the grader's files are unchanged.
+        workers: the pool that grades the submissions.
+        on_verdict: a function that is called with each verdict as soon as it is known, in any order.
 
     Returns:
         The verdicts, in the order of `cases`.
@@ -50,16 +50,16 @@ def verify_cases(
 
     def grade(case: Case) -> Verdict:
         with tempfile.TemporaryDirectory(prefix="verification-") as name:
-            path, folder = _write(case, Path(name) / case.name), out / case.assignment / case.name
+            path, folder = _write_case(case, Path(name) / case.name), out / case.assignment / case.name
             is_whole_suite = not case.options.only
             folder = folder if is_whole_suite else folder / PARTIAL
             job = Job(path, case.assignment, case.name, seed, folder, workers.isolation, case.options)
-            result = stored(job) if is_whole_suite else None
+            result = stored_result(job) if is_whole_suite else None
             if result is None or result.files_digest != job.suite.files_digest:  # the grader has changed
-                result = grade_submission(job, in_own_sandbox if case.kind is CaseKind.ATTACK else workers)
+                result = grade_submission(job, run_in_own_sandbox if case.kind is CaseKind.ATTACK else workers)
         mismatch = case.verify(result) if result.status is Status.GRADED else result.diagnosis.sentence
         if case.kind is CaseKind.ATTACK:
-            mismatch = "; ".join(filter(None, (mismatch, _leak(result, folder))))
+            mismatch = "; ".join(filter(None, (mismatch, _describe_leak(result, folder))))
         log = folder / LOG
         if result.unjudged or result.status is Status.NOT_GRADED:
             text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
@@ -68,21 +68,21 @@ def verify_cases(
                 mismatch = f"checks raised errors: {failures}; {log} has the details"
         return Verdict(case.assignment, case.kind, case.name, result, mismatch, case.options.only)
 
-    verdicts = map_parallel(grade, _interleaved(cases), jobs=workers.count, on_done=on_verdict)
+    verdicts = map_parallel(grade, _interleave(cases), jobs=workers.count, on_done=on_verdict)
     by_name = {(verdict.assignment, verdict.name): verdict for verdict in verdicts}
     return tuple(by_name[case.assignment, case.name] for case in cases)
 
 
-def _leak(result: Result, folder: Path) -> str:
-    """Describe hidden text that reaches the student: in the result, the feedback page or the files beside them."""
+def _describe_leak(result: Result, folder: Path) -> str:
+    """Describe hidden text that the student could read in the result, the feedback page or the files beside them."""
     feedback.write(result, folder)
     lines = hidden_lines(result.assignment)
-    leaked = [word for text in texts_of(folder) for word in hidden_text_in(text, lines)]
-    return f"shows hidden text: {leaked[0]}" if leaked else ""
+    leaked_texts = [word for text in texts_of(folder) for word in hidden_text_in(text, lines)]
+    return f"shows hidden text: {leaked_texts[0]}" if leaked_texts else ""
 
 
-def _interleaved(cases: Sequence[Case]) -> list[Case]:
-    """Return the cases with the assignments interleaved, because some assignments mostly wait and others compute."""
+def _interleave(cases: Sequence[Case]) -> list[Case]:
+    """Interleave the cases of the assignments, because the programs of some mostly wait and those of others compute."""
     totals, counts = Counter(case.assignment for case in cases), Counter[str]()
     positions = []
     for case in cases:
@@ -91,7 +91,7 @@ def _interleaved(cases: Sequence[Case]) -> list[Case]:
     return [case for _, case in sorted(zip(positions, cases, strict=True), key=lambda pair: pair[0])]
 
 
-def _write(case: Case, folder: Path) -> Path:
+def _write_case(case: Case, folder: Path) -> Path:
     """Write a case to `folder`, and return the path of its submission."""
     case.write(folder)
     return folder / SUBMISSION if (folder / SUBMISSION).is_dir() else folder

@@ -1,4 +1,4 @@
-"""A pool of grading workers. Each is a fork server in a sandbox that starts on first use and again after a failure."""
+"""A pool of workers that grade. Each is a fork server in a sandbox, started on first use and after each failure."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from autograder import course_paths
-from autograder.building.keeper import attend
+from autograder.building.bundle_server import serve_worker
 from autograder.grade.job import Job
 from autograder.grade.own_sandbox import GRACE
 from autograder.run.sandbox.bubblewrap import OUT
@@ -26,18 +26,18 @@ from autograder.run.sandbox.process import ExitReason
 from autograder.run.sandbox.spec import View
 from autograder.run.sandbox.worker_sandbox import WorkerReport, copy_submission, in_worker_sandbox
 
-_EXIT_TIMEOUT = 5.0  # s to wait for the exit of a server that no longer replies
+_EXIT_TIMEOUT = 5.0  # s; how long a server that no longer replies may take to exit
 
 
 class WorkerPool:
     """Grades submissions with a fixed number of workers. Each worker grades many submissions in one sandbox.
 
-    A pool is a context manager and has the call signature of `own_sandbox.in_own_sandbox`. Use it only for submissions
-    that the course itself contains; see `fork_server`.
+    A pool is a context manager, and is called like `own_sandbox.run_in_own_sandbox`. Use it only for submissions that
+    the course itself contains; see `fork_server`.
 
     Args:
         isolation: the isolation level of each worker sandbox.
-        count: number of workers, which is also the number of submissions graded at the same time.
+        count: the number of workers, which is also how many submissions are graded at the same time.
 
     Raises:
         IsolationError: this machine does not support the isolation level.
@@ -66,7 +66,7 @@ class WorkerPool:
         try:
             worker = worker or self._starter.submit(_Worker, self.isolation).result()
             report = worker.grade(job)
-            # A sandbox can also break from outside, for example when apt replaces a file that is mounted in it.
+            # External events can also break a sandbox, for example if apt replaces a file that is mounted in it.
             if report.exit_reason is not ExitReason.EXITED or report.returncode:
                 worker.close()
                 worker = None
@@ -80,20 +80,22 @@ class _Worker:
 
     def __init__(self, isolation: Isolation) -> None:
         self._stack = ExitStack()
-        ours, theirs = Pipe()
-        self._server, self._isolation = self._stack.enter_context(ours), isolation
-        # The sandbox sees later files only in a folder that is mounted from the start, and its user must be able to
-        # read them.
+        own_end, server_end = Pipe()
+        self._server, self._isolation = self._stack.enter_context(own_end), isolation
+        # Files that are written after the sandbox has started appear in it only if their folder was mounted from the
+        # start. The sandbox's user must be able to read them.
         self._shared = Path(self._stack.enter_context(TemporaryDirectory(prefix="verification-shared-")))
         self._shared.chmod(0o755)
 
         def command(scratch: Path) -> list[str]:
             module = "autograder.author.verification.fork_server"
-            return [sys.executable, "-m", module, str(scratch), str(theirs.fileno())]
+            return [sys.executable, "-m", module, str(scratch), str(server_end.fileno())]
 
         view = View(shown=(*{course_paths.ROOT, course_paths.course().root}, self._shared))
-        with theirs:
-            sandbox = in_worker_sandbox(command, isolation, VERIFICATION_WORKER, view=view, pass_fds=(theirs.fileno(),))
+        with server_end:
+            sandbox = in_worker_sandbox(
+                command, isolation, VERIFICATION_WORKER, view=view, pass_fds=(server_end.fileno(),)
+            )
             self._process, self._scratch = self._stack.enter_context(sandbox)
 
     def grade(self, job: Job) -> WorkerReport:
@@ -104,25 +106,26 @@ class _Worker:
             Path(folder).chmod(0o755)
             path = Path(folder, job.path.name)
             copy_submission(job.path, path)
-            options = replace(job.options, built=job.options.built and str(self._share(Path(job.options.built))))
-            sent = replace(job, path=path, options=options, scratch=scratch, out=self._scratch / OUT)
+            prebuilt = job.options.prebuilt
+            options = replace(job.options, prebuilt=prebuilt and str(self._copy_to_shared(Path(prebuilt))))
+            remote_job = replace(job, path=path, options=options, scratch=scratch, out=self._scratch / OUT)
             try:
-                self._server.send_bytes(sent.to_json().encode())
+                self._server.send_bytes(remote_job.to_json().encode())
                 is_over = lambda: self._process.exit_reason is not None or time.monotonic() > deadline  # noqa: E731
-                files, reply = attend(self._server, self._isolation, is_over)
+                files, reply = serve_worker(self._server, self._isolation, is_over)
             except (MessageError, OSError):
                 files, reply = {}, {}
-        return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._end()
+        return WorkerReport(ExitReason.EXITED, reply["status"], reply["output"], files) if reply else self._stop()
 
-    def _share(self, built: Path) -> Path:
-        """Copy a built workspace to the shared folder, once for many jobs, and return the copy."""
-        copy = self._shared / f"built-{hashlib.sha256(str(built).encode()).hexdigest()[:16]}"
+    def _copy_to_shared(self, built_workspace: Path) -> Path:
+        """Copy a built workspace to the shared folder unless an earlier job did, and return the path of the copy."""
+        copy = self._shared / f"built-{hashlib.sha256(str(built_workspace).encode()).hexdigest()[:16]}"
         if not copy.exists():
-            shutil.copytree(built, copy, symlinks=True)
+            shutil.copytree(built_workspace, copy, symlinks=True)
         return copy
 
-    def _end(self) -> WorkerReport:
-        """End a server that did not reply, and return a report with the reason."""
+    def _stop(self) -> WorkerReport:
+        """Stop a server that did not reply, and return a report with the reason."""
         self._process.wait(_EXIT_TIMEOUT)
         self._process.kill()
         exit_reason = self._process.exit_reason or ExitReason.WALL_TIME
@@ -130,5 +133,5 @@ class _Worker:
         return WorkerReport(exit_reason, self._process.returncode or 1, self._process.output)
 
     def close(self) -> None:
-        """End the server and all its child processes."""
+        """Stop the server and all its child processes."""
         self._stack.close()

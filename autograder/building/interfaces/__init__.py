@@ -1,7 +1,8 @@
-"""Message packages: a student's as plain classes for the trusted process, and ROS's tutorials' as real packages.
+"""Loads students' interface packages as plain classes, and builds those of ROS's tutorials as real packages.
 
-`load_interfaces` reads a package of a student's workspace. It compiles and imports nothing, and runs no line of the
-package's CMake or Python. `prefix.build` turns the texts of one of our packages into a prefix with rosidl's generators.
+`load_interfaces` reads a package of a student's workspace for the trusted process. It does not compile or import
+anything, and does not run the package's CMake or Python code. `prefix.build` builds a package from definitions of this
+project with rosidl's generators.
 """
 
 from autograder.building.interfaces.cache import Cache

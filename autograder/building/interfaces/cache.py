@@ -1,8 +1,8 @@
-"""A content-addressed cache of built trees: built once, put in place whole, bounded in size.
+"""A content-addressed cache of built folders. Each is built once and added atomically. Their total size is limited.
 
-Each entry is a folder named by its key, beside a lock file. Processes that use, build or evict the entry hold the lock.
-The kernel releases locks when a process dies, and a half-built folder never has an entry's name. If the entries exceed
-the limit, those that are not in use are removed.
+An entry is a folder named after its key, beside a lock file. Processes that use, build or evict the entry hold the
+lock. The kernel releases locks when a process dies, and a half-built folder never has an entry's name. If the entries
+exceed the limit, those that are not in use are removed.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from pathlib import Path
 
 from autograder.run.sandbox.limits import MIB
 
-LIMIT = 512 * MIB
+LIMIT = 512 * MIB  # for all entries together
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 
 
 class Cache:
-    """A cache in a private folder of this user. `limit` bounds the bytes of its entries."""
+    """A cache in a private folder of this user. `limit` is the maximum number of bytes in all its entries."""
 
     def __init__(self, root: Path, limit: int = LIMIT) -> None:
         self.root, self._limit = root, limit
 
     @classmethod
     def default(cls, name: str) -> Cache:
-        """Return this user's cache of a name: below `XDG_CACHE_HOME`, or among temporary files where it cannot be."""
-        for base in (_xdg(), Path(tempfile.gettempdir()) / f"autograder-cache-{os.getuid()}"):
+        """Return this user's cache called `name`, below `XDG_CACHE_HOME` or, if that fails, in a temporary folder."""
+        for base in (_user_cache_folder(), Path(tempfile.gettempdir()) / f"autograder-cache-{os.getuid()}"):
             root = base / "autograder" / name
             with contextlib.suppress(OSError):
                 root.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -41,30 +41,30 @@ class Cache:
         return cls(Path(tempfile.mkdtemp(prefix="autograder-cache-")))
 
     def get(self, key: str, make: Callable[[Path], None]) -> Path:
-        """Return the folder of an entry as `use` does; it stays until another one is made."""
+        """Return the folder of an entry, as `use` yields it. The folder exists at least until another entry is made."""
         with self.use(key, make) as entry:
             return entry
 
     @contextlib.contextmanager
     def use(self, key: str, make: Callable[[Path], None]) -> Iterator[Path]:
-        """Give the folder of an entry, made first if it is not there; it stays for as long as the block lasts.
+        """Yield the folder of an entry, which is not evicted during the block. Make the entry if it does not exist.
 
         Args:
             key: 16 to 64 hexadecimal digits.
-            make: fills the given new folder. If it raises, no entry is added.
+            make: fills the given new folder. If it raises an exception, no entry is added.
         """
         self.root.mkdir(parents=True, exist_ok=True, mode=0o700)
-        entry, made = self.root / key, False
+        entry, is_new = self.root / key, False
         with self._lock(key) as lock:
             fcntl.flock(lock, fcntl.LOCK_SH)
             while not entry.is_dir():
-                fcntl.flock(lock, fcntl.LOCK_EX)  # others that want it wait here, and then find it
+                fcntl.flock(lock, fcntl.LOCK_EX)  # other processes wait here until the entry exists
                 if not entry.is_dir():
                     self._make(entry, make)
-                    made = True
-                fcntl.flock(lock, fcntl.LOCK_SH)  # the lock is free in between, and the entry may be evicted
+                    is_new = True
+                fcntl.flock(lock, fcntl.LOCK_SH)  # for a moment, the lock is free and the entry may be evicted
             os.utime(entry)
-            if made:
+            if is_new:
                 self._evict()
             yield entry
 
@@ -77,15 +77,15 @@ class Cache:
             os.close(lock)
 
     def _make(self, entry: Path, make: Callable[[Path], None]) -> None:
-        fresh = Path(tempfile.mkdtemp(prefix=f".{entry.name}-", dir=self.root))
+        folder = Path(tempfile.mkdtemp(prefix=f".{entry.name}-", dir=self.root))
         try:
-            make(fresh)
-            fresh.rename(entry)
+            make(folder)
+            folder.rename(entry)
         finally:
-            shutil.rmtree(fresh, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
 
     def _evict(self) -> None:
-        """Remove the least recently used entries until the rest fits, and the remains of killed builds."""
+        """Remove the least recently used entries until the others fit, and the unfinished folders of killed builds."""
         entries: list[tuple[float, int, Path]] = []
         for folder in self.root.iterdir():
             with contextlib.suppress(FileNotFoundError):
@@ -101,24 +101,24 @@ class Cache:
                 total -= size
 
     def _remove(self, folder: Path, key: str) -> bool:
-        """Remove a folder unless its key is in use or being made; return whether it is gone."""
+        """Remove a folder unless its entry is in use or being made. Return whether the folder no longer exists."""
         with self._lock(key) as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                # Renamed first: a removal that is cut short leaves no half an entry.
-                doomed = folder.with_name(f".{key}-{os.getpid()}-{time.monotonic_ns()}")
-                folder.rename(doomed)
+                # It is renamed first, so that an interrupted removal does not leave half an entry.
+                doomed_folder = folder.with_name(f".{key}-{os.getpid()}-{time.monotonic_ns()}")
+                folder.rename(doomed_folder)
             except FileNotFoundError:
                 return True
             except BlockingIOError:
                 return False
-            shutil.rmtree(doomed, ignore_errors=True)
+            shutil.rmtree(doomed_folder, ignore_errors=True)
             return True
 
 
-def _xdg() -> Path:
-    chosen = os.environ.get("XDG_CACHE_HOME", "")
-    return Path(chosen) if chosen.startswith("/") else Path(os.environ.get("HOME", "/nonexistent")) / ".cache"
+def _user_cache_folder() -> Path:
+    folder = os.environ.get("XDG_CACHE_HOME", "")
+    return Path(folder) if folder.startswith("/") else Path(os.environ.get("HOME", "/nonexistent")) / ".cache"
 
 
 def _size(folder: Path) -> int:

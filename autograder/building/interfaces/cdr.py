@@ -1,6 +1,6 @@
-"""The CDR of DDS, in which messages travel: plain values to bytes and back, by rosidl's model of their types.
+"""Converts plain values to and from CDR, the format of DDS messages, according to rosidl's model of their types.
 
-The bytes are untrusted. Reading is bounded, and bytes that do not fit the type raise a ValueError.
+The bytes are untrusted. Reading is bounded, and bytes that do not match the type raise a ValueError.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 from rosidl_parser import definition as rosidl
 
 MAX_BYTES = 256 * 1024  # of a message
-MAX_OBJECTS = 10_000  # texts and messages in it
-CODES = {  # of `struct`; those of numbers are the codes of `array`, too
+MAX_OBJECTS = 10_000  # strings and nested messages in a message
+CODES = {  # format characters of `struct`; those of numbers are also type codes of `array`
     **{"boolean": "?", "octet": "c", "float": "f", "double": "d"},
     **{
         "int8": "b",
@@ -34,14 +34,14 @@ Members = Callable[[rosidl.NamespacedType], Sequence[tuple[str, rosidl.AbstractT
 """Returns the names and types of a message's members."""
 
 Make = Callable[[rosidl.NamespacedType, dict[str, Any]], Any]
-"""Makes a message of the values of its members."""
+"""Creates a message from the values of its members."""
 
 
 class Writer:
-    """Writes values to `data`, little-endian; `members` looks into nested messages.
+    """Writes values to `data`, little-endian; `members` returns the members of nested messages.
 
     Raises:
-        ValueError: a value does not fit its type.
+        ValueError: a value does not match its type.
     """
 
     def __init__(self, members: Members) -> None:
@@ -57,7 +57,7 @@ class Writer:
 
     def _write(self, kind: rosidl.AbstractType, value: Any) -> None:
         if isinstance(kind, rosidl.AbstractNestedType):
-            self._write_all(kind, value)
+            self._write_elements(kind, value)
         elif isinstance(kind, rosidl.NamespacedType):
             for name, inner in self._members(kind):
                 self._write(inner, getattr(value, name, 0))  # the member of an empty structure is 0
@@ -65,7 +65,7 @@ class Writer:
             if kind.has_maximum_size() and len(value) > kind.maximum_size:
                 raise ValueError(f"more than {kind.maximum_size} characters")
             if isinstance(kind, rosidl.AbstractWString):
-                text = _wide(value.encode("utf-16-le"), "H", "I")
+                text = _convert_units(value.encode("utf-16-le"), "H", "I")
                 self._pack("I", len(text) // 4)
             else:
                 text = value.encode() + b"\0"
@@ -74,7 +74,7 @@ class Writer:
         else:
             self._pack(CODES[kind.typename], value)
 
-    def _write_all(self, kind: Any, values: Any) -> None:
+    def _write_elements(self, kind: Any, values: Any) -> None:
         if isinstance(kind, rosidl.Array):
             if len(values) != kind.size:
                 raise ValueError(f"{len(values)} elements instead of {kind.size}")
@@ -90,22 +90,22 @@ class Writer:
 
 
 class Reader:
-    """Reads values from bytes; `members` looks into nested messages, and `make` makes them.
+    """Reads values from bytes; `members` returns the members of nested messages, and `make` creates the messages.
 
     Raises:
-        ValueError: the bytes are too many, or do not fit the type.
+        ValueError: there are too many bytes, or they do not match the type.
     """
 
     def __init__(self, data: bytes, members: Members, make: Make) -> None:
         if len(data) > MAX_BYTES:
             raise ValueError(f"more than {MAX_BYTES // 1024} KiB")
-        self._data, self._at, self._objects = data, 0, 0
+        self._data, self._offset, self._objects = data, 0, 0
         self._members, self._make = members, make
 
     def read(self, kind: rosidl.AbstractType) -> Any:
         """Read a value of a type."""
         if isinstance(kind, rosidl.AbstractNestedType):
-            return self._read_all(kind)
+            return self._read_elements(kind)
         if isinstance(kind, rosidl.BasicType):
             return struct.unpack(f"<{CODES[kind.typename]}", self._take(1, struct.calcsize(CODES[kind.typename])))[0]
         self._objects += 1
@@ -115,10 +115,10 @@ class Reader:
             return self._make(kind, {name: self.read(inner) for name, inner in self._members(kind)})
         count = self._count()
         if isinstance(kind, rosidl.AbstractWString):
-            return _wide(self._take(count, 4), "I", "H").decode("utf-16-le", "replace")
-        return self._take(count, 1)[:-1].decode("utf-8", "replace")  # of any length, as rosidl reads it
+            return _convert_units(self._take(count, 4), "I", "H").decode("utf-16-le", "replace")
+        return self._take(count, 1)[:-1].decode("utf-8", "replace")  # like rosidl, without a check of the length
 
-    def _read_all(self, kind: Any) -> Any:
+    def _read_elements(self, kind: Any) -> Any:
         inner, is_array = kind.value_type, isinstance(kind, rosidl.Array)
         count = kind.size if is_array else self._count()
         if isinstance(kind, rosidl.BoundedSequence) and count > kind.maximum_size:
@@ -133,14 +133,14 @@ class Reader:
         return int(struct.unpack("<I", self._take(1, 4))[0])
 
     def _take(self, count: int, size: int) -> bytes:
-        start = self._at + -self._at % size
-        self._at = start + count * size
-        if self._at > len(self._data):
+        start = self._offset + -self._offset % size
+        self._offset = start + count * size
+        if self._offset > len(self._data):
             raise ValueError("the bytes end too early")
-        return self._data[start : self._at]
+        return self._data[start : self._offset]
 
 
-def _wide(text: bytes, code: str, other: str) -> bytes:
-    """Return the units of a wide text, of another size each: Fast CDR writes the 16 bits of a unit as 32."""
+def _convert_units(text: bytes, code: str, other: str) -> bytes:
+    """Convert the units of a wide string to another size: Fast CDR writes the 16 bits of a unit as 32."""
     units = struct.unpack(f"<{len(text) // struct.calcsize(code)}{code}", text)
     return struct.pack(f"<{len(units)}{other}", *(unit & 0xFFFF for unit in units))

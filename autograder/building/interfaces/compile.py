@@ -1,4 +1,4 @@
-"""Compiles generated interface code with the system's gcc: few translation units, without optimisation."""
+"""Compiles generated interface code with the system's gcc, in few translation units and without optimisation."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ import numpy
 
 from autograder.ros.environment import site_packages
 
-FAST = "rosidl_typesupport_fastrtps_c"
+FASTRTPS = "rosidl_typesupport_fastrtps_c"
 INTROSPECTION = "rosidl_typesupport_introspection_c"
-# The libraries that dependants link: an installed package has all of them, one that was built here the first two.
-_LIBRARIES = (FAST, INTROSPECTION, "rosidl_generator_c", "rosidl_typesupport_c", "rosidl_generator_py")
+# The libraries to which dependants link. Installed packages have all of them, packages built here only the first two.
+_LIBRARIES = (FASTRTPS, INTROSPECTION, "rosidl_generator_c", "rosidl_typesupport_c", "rosidl_generator_py")
 
 
 def compile_package(
@@ -23,17 +23,17 @@ def compile_package(
 ) -> None:
     """Compile the generators' output in `work` into libraries and the extension module under `prefix`.
 
-    The library of the Fast DDS type support holds everything but introspection: rcl asks for these two by name. It is
-    the extension module, too, under a second name.
+    rcl loads two libraries by name: one for the Fast DDS type support, and one for introspection. The first contains
+    everything except introspection, and the extension module is a link to it.
 
     Args:
-        package: its name.
-        prefix: where the libraries go.
+        package: the package's name.
+        prefix: the folder to which the libraries are written.
         work: the folder with the generated code.
-        prefixes: where other packages are found.
-        dependencies: all interface packages below this one.
+        prefixes: the prefixes of other packages.
+        dependencies: all direct and indirect dependencies that are interface packages.
     """
-    names = ("rosidl_generator_c", "rosidl_typesupport_c", FAST, INTROSPECTION)
+    names = ("rosidl_generator_c", "rosidl_typesupport_c", FASTRTPS, INTROSPECTION)
     include = [f"-I{work / name}" for name in names]
     for root in prefixes:
         include += [f"-I{folder}" for folder in sorted((root / "include").glob("*/"))] + [f"-I{root / 'include'}"]
@@ -48,34 +48,40 @@ def compile_package(
         path for path in sources("rosidl_generator_py", "*.c") if path.parent != work / "rosidl_generator_py" / package
     ]
     entry = next((work / "rosidl_generator_py" / package).glob("_*.ep.*.c"))
-    # Files with the same headers are compiled together. C++ comes first, because it takes longest.
-    main = [
-        _unit(work, "types.cpp", sources(FAST, "*.cpp") + sources("rosidl_typesupport_c", "*.cpp")),
+    # Files with the same headers are compiled together. C++ is first, because it takes longest.
+    main_units = [
+        _unit(work, "types.cpp", sources(FASTRTPS, "*.cpp") + sources("rosidl_typesupport_c", "*.cpp")),
         _unit(work, "python.c", [*conversions, entry]),
         _unit(work, "functions.c", functions),
-        # Each names the types below it with the same static words.
+        # Compiled separately, because they define the same static names for the types that they contain.
         *sources("rosidl_generator_c", "*__description.c"),
     ]
     introspection = _unit(work, "introspection.c", sources(INTROSPECTION, "*.c"))
-    objects = {path: str(work / f"{number}.o") for number, path in enumerate([*main, introspection])}
+    objects = {path: str(work / f"{number}.o") for number, path in enumerate([*main_units, introspection])}
     with ThreadPoolExecutor(min(3, (os.cpu_count() or 1) + 1)) as pool:
         list(pool.map(_run, [_compilation(path, target, flags) for path, target in objects.items()]))
     folder = prefix / "lib"
-    below = [f"-l{name}__{kind}" for name in dependencies for kind in _LIBRARIES if _library(prefixes, name, kind)]
+    linked = [f"-l{name}__{kind}" for name in dependencies for kind in _LIBRARIES if _has_library(prefixes, name, kind)]
     paths = [part for root in prefixes for part in (f"-L{root / 'lib'}", f"-Wl,-rpath,{root / 'lib'}")]
-    common = [f"-L{folder}", *paths, "-Wl,-rpath,$ORIGIN:$ORIGIN/../../..", "-Wl,--as-needed", *below]
+    common = [f"-L{folder}", *paths, "-Wl,-rpath,$ORIGIN:$ORIGIN/../../..", "-Wl,--as-needed", *linked]
     common += [f"-l{INTROSPECTION}", "-lrosidl_typesupport_c", "-lrosidl_runtime_c", "-lrcutils"]
-    fast, inner = (folder / f"lib{package}__{name}.so" for name in (FAST, INTROSPECTION))
-    # Introspection needs functions of the main library, which is loaded first and brings it along.
-    _link(inner, [objects[introspection]], common)
-    own = [f"-l{FAST}", "-lrosidl_typesupport_fastrtps_cpp", "-lfastcdr", "-Wl,--no-as-needed", str(inner)]
-    _link(fast, [objects[path] for path in main], [*common, *own])
+    main_library, introspection_library = (folder / f"lib{package}__{name}.so" for name in (FASTRTPS, INTROSPECTION))
+    # Introspection needs functions of the main library, which is loaded first and loads introspection.
+    _link(introspection_library, [objects[introspection]], common)
+    options = [
+        f"-l{FASTRTPS}",
+        "-lrosidl_typesupport_fastrtps_cpp",
+        "-lfastcdr",
+        "-Wl,--no-as-needed",
+        str(introspection_library),
+    ]
+    _link(main_library, [objects[path] for path in main_units], [*common, *options])
     name = f"{package}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}"
     extension = site_packages(prefix) / package / name
-    extension.symlink_to(os.path.relpath(fast, extension.parent))
+    extension.symlink_to(os.path.relpath(main_library, extension.parent))
 
 
-def _library(prefixes: tuple[Path, ...], package: str, kind: str) -> bool:
+def _has_library(prefixes: tuple[Path, ...], package: str, kind: str) -> bool:
     return any((root / "lib" / f"lib{package}__{kind}.so").is_file() for root in prefixes)
 
 
@@ -86,7 +92,8 @@ def _unit(work: Path, name: str, sources: list[Path]) -> Path:
 
 
 def _compilation(source: Path, target: str, flags: list[str]) -> list[str]:
-    # C++14 is the least that Fast CDR takes, and its standard headers are the shortest. GNU's has no trigraphs.
+    # C++14 is the oldest version that Fast CDR accepts, and has the shortest standard headers. GNU's variant of it has
+    # no trigraphs.
     compiler = ["g++", "-std=gnu++14"] if source.suffix == ".cpp" else ["gcc", "-std=gnu11"]
     return [*compiler, "-c", *flags, str(source), "-o", target]
 

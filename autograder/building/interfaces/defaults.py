@@ -1,4 +1,4 @@
-"""The initial values of fields."""
+"""Provides functions that create the initial values of fields."""
 
 from __future__ import annotations
 
@@ -14,35 +14,37 @@ from rosidl_parser import definition as rosidl
 from autograder.building.interfaces.cdr import CODES, NUMBERS
 
 
-def of(kind: rosidl.AbstractType, given: Any, make: Callable[[rosidl.NamespacedType], Any]) -> Callable[[], Any]:
-    """Return a function that returns the default of a field, each time a new object.
+def default_factory(
+    kind: rosidl.AbstractType, default: Any, make: Callable[[rosidl.NamespacedType], Any]
+) -> Callable[[], Any]:
+    """Return a function that creates the initial value of a field, a new object at each call.
 
     Args:
         kind: the field's type.
-        given: the default of its definition, None where it has none.
-        make: makes a message of a type.
+        default: the default in its definition, or None.
+        make: creates a message of a type.
     """
     if not isinstance(kind, rosidl.AbstractNestedType):
-        return _single(kind, given, make)
+        return _single_factory(kind, default, make)
     value = kind.value_type
     count = kind.size if isinstance(kind, rosidl.Array) else 0
-    singles = [_single(value, each, make) for each in ([None] * count if given is None else given)]
+    factories = [_single_factory(value, item, make) for item in ([None] * count if default is None else default)]
     if not isinstance(value, rosidl.BasicType) or value.typename not in NUMBERS:
-        return lambda: [single() for single in singles]
+        return lambda: [factory() for factory in factories]
     code = CODES[value.typename]
-    numbers = [single() for single in singles]
-    filled: Any = (
+    numbers = [factory() for factory in factories]
+    values: Any = (
         np.array(numbers, np.dtype(code).str) if isinstance(kind, rosidl.Array) else array.array(code, numbers)
     )
-    return partial(copy.copy, filled)
+    return partial(copy.copy, values)
 
 
-def _single(kind: Any, given: Any, make: Callable[[rosidl.NamespacedType], Any]) -> Callable[[], Any]:
+def _single_factory(kind: Any, default: Any, make: Callable[[rosidl.NamespacedType], Any]) -> Callable[[], Any]:
     if isinstance(kind, rosidl.NamespacedType):
         return partial(make, kind)
     if isinstance(kind, rosidl.AbstractGenericString):
-        return lambda: given or ""
+        return lambda: default or ""
     if kind.typename == "octet":
-        return lambda: bytes([given or 0])
-    plain = {"boolean": bool, "float": float, "double": float}.get(kind.typename, int)
-    return lambda: plain(given or 0)
+        return lambda: bytes([default or 0])
+    convert = {"boolean": bool, "float": float, "double": float}.get(kind.typename, int)
+    return lambda: convert(default or 0)

@@ -1,8 +1,9 @@
-"""Reads interface definitions with bounds and with errors that name the line: texts in, plain definitions out.
+"""Parses the texts of interface definitions. Their size is limited, and errors name the line.
 
-The real parser interprets a definition. This module also rejects names and sizes that it accepts but that generated
-code cannot handle: keywords of C and Python, gigantic arrays. The resulting text is written anew from the parsed
-definition, without comments: no text of the author reaches a generator, and comments do not affect a type's hash.
+The definitions are parsed by rosidl's parser. This module also rejects names and sizes that the parser accepts but that
+generated code cannot handle, such as keywords of C and Python and huge arrays. The generators get new definitions,
+written from the parsed values without comments. So they never read the author's text, and comments do not affect a
+type's hash.
 """
 
 from __future__ import annotations
@@ -18,18 +19,22 @@ from typing import Any
 from autograder.building.interfaces import rosidl
 from autograder.building.interfaces.definitions import Constant, Definition, DefinitionError, Field, Section
 
-MAX_FILES = 64
-MAX_BYTES = 64 * 1024
-MAX_FIELDS = 512
-MAX_ELEMENTS = 100_000  # a message's fixed arrays, multiplied through all that it holds
-FOREIGN_ELEMENTS = 128  # the count for a message of ROS
-SECTIONS = {"msg": 1, "srv": 2, "action": 3}
-PARTS = {"msg": "a message has none", "srv": "request --- response", "action": "goal --- result --- feedback"}
+MAX_FILES = 64  # definitions in a package
+MAX_BYTES = 64 * 1024  # of a definition
+MAX_FIELDS = 512  # of a section of a definition
+MAX_ELEMENTS = 100_000  # of all fixed arrays in a message, including those in nested messages
+FOREIGN_ELEMENTS = 128  # how many elements a message of a ROS package is assumed to have
+SECTIONS = {"msg": 1, "srv": 2, "action": 3}  # how many sections a definition of each kind has
+SEPARATOR_ADVICE = {
+    "msg": "a message has none",
+    "srv": "request --- response",
+    "action": "goal --- result --- feedback",
+}
 
 _PATH = re.compile(r"(msg|srv|action)/([A-Z][A-Za-z0-9]{0,79})\.(msg|srv|action)")
 _PACKAGE = re.compile(r"(?!.*__)[a-z][a-z0-9_]{0,78}[a-z0-9]")
 _PRINTABLE = re.compile(r"[ -~]*")
-# C and C++ both compile the generated structures.
+# Words that cannot be names of fields, because the generated structures are compiled both as C and as C++.
 _C_WORDS = frozenset(
     re.findall(
         r"\w+",
@@ -46,7 +51,7 @@ _C_WORDS = frozenset(
 
 
 def require_package_name(name: str) -> None:
-    """Raise a DefinitionError unless a package's name is one that ROS takes for interfaces."""
+    """Raise a DefinitionError unless ROS accepts the name for an interface package."""
     if not _PACKAGE.fullmatch(name) or keyword.iskeyword(name):
         raise DefinitionError(
             "package.xml", f"{name[:80]!r} is not a package name: start with a letter, use a-z, 0-9, single underscores"
@@ -54,17 +59,17 @@ def require_package_name(name: str) -> None:
 
 
 def read(
-    package: str, files: Mapping[str, str], below: Mapping[tuple[str, str], int] | None = None
+    package: str, files: Mapping[str, str], foreign: Mapping[tuple[str, str], int] | None = None
 ) -> tuple[Definition, ...]:
     """Read the definitions of a package.
 
     Args:
-        package: its name.
-        files: texts by their path such as `msg/RobotStatus.msg`.
-        below: the elements of other packages' messages, by package and name, where they are known.
+        package: the package's name.
+        files: the texts of the definitions by their paths, such as `msg/RobotStatus.msg`.
+        foreign: how many elements messages of other packages have, if known, by package and name.
 
     Raises:
-        DefinitionError: the first thing that is wrong, by file and line.
+        DefinitionError: a definition is wrong. The exception names the file and the line of the first error.
     """
     require_package_name(package)
     if not files:
@@ -77,22 +82,22 @@ def read(
             raise DefinitionError(
                 path[:120], "definitions are called msg/Name.msg, srv/Name.srv or action/Name.action, Name in CamelCase"
             )
-    lowered = [path.lower() for path in files]
+    lowercase_paths = [path.lower() for path in files]
     for path in files:
-        if lowered.count(path.lower()) > 1:
+        if lowercase_paths.count(path.lower()) > 1:
             raise DefinitionError(path, "another file differs only in capital letters: rename one of them")
-    own = {path[4:-4] for path in files if path.startswith("msg/")}
-    read = {path: _Reader(package, path, text, own) for path, text in sorted(files.items())}
-    messages = {path[4:-4]: reader for path, reader in read.items() if path.startswith("msg/")}
-    elements = {path: reader.weigh(messages, below or {}, ()) for path, reader in read.items()}
-    return tuple(Definition(path, each.sections, tuple(each.uses), elements[path]) for path, each in read.items())
+    own_messages = {path[4:-4] for path in files if path.startswith("msg/")}
+    readers = {path: _Reader(package, path, text, own_messages) for path, text in sorted(files.items())}
+    messages = {path[4:-4]: reader for path, reader in readers.items() if path.startswith("msg/")}
+    elements = {path: reader.count_elements(messages, foreign or {}, ()) for path, reader in readers.items()}
+    return tuple(Definition(path, r.sections, tuple(r.uses), elements[path]) for path, r in readers.items())
 
 
 class _Reader:
-    """One file on its way from raw text to a definition."""
+    """Parses one file. `own_messages` contains the names of the package's messages."""
 
-    def __init__(self, package: str, path: str, raw: str, own: set[str]) -> None:
-        self._package, self._path, self._own = package, path, own
+    def __init__(self, package: str, path: str, raw: str, own_messages: set[str]) -> None:
+        self._package, self._path, self._own_messages = package, path, own_messages
         if len(raw.encode("utf-8", "replace")) > MAX_BYTES:
             raise DefinitionError(path, f"more than {MAX_BYTES // 1024} KiB: a definition is short")
         self._kind, name = path.split("/")
@@ -100,23 +105,27 @@ class _Reader:
         lines = raw.replace("\r\n", "\n").split("\n")
         self._lines = [self._clean(line) for line in lines]
         self.uses: list[tuple[str, str, str]] = []
-        self._arrays: list[tuple[int, tuple[str, str] | None, str]] = []  # of messages: package and name
+        # For each field: the number of its elements, its message type as package and name or None, and its line.
+        self._arrays: list[tuple[int, tuple[str, str] | None, str]] = []
         self.sections = tuple(self._read_section(lines) for lines in self._split())
 
-    def weigh(
-        self, messages: Mapping[str, _Reader], below: Mapping[tuple[str, str], int], above: tuple[str, ...]
+    def count_elements(
+        self, messages: Mapping[str, _Reader], foreign: Mapping[tuple[str, str], int], outer_paths: tuple[str, ...]
     ) -> int:
-        """Count the elements that a fresh message of this type makes room for."""
-        if self._path in above:
+        """Return the number of elements for which a new message of this type allocates memory.
+
+        `outer_paths` are the definitions of the messages that contain it.
+        """
+        if self._path in outer_paths:
             raise self._error("the message contains itself: take the field out that leads back to it")
         total = 1
         for count, inner, line in self._arrays:
-            each = 1
+            inner_elements = 1
             if inner is not None and inner[0] == self._package:
-                each = messages[inner[1]].weigh(messages, below, (*above, self._path))
+                inner_elements = messages[inner[1]].count_elements(messages, foreign, (*outer_paths, self._path))
             elif inner is not None:
-                each = below.get(inner, FOREIGN_ELEMENTS)
-            total += count * each
+                inner_elements = foreign.get(inner, FOREIGN_ELEMENTS)
+            total += count * inner_elements
             if total > MAX_ELEMENTS:
                 raise self._error(
                     f"arrays of more than {MAX_ELEMENTS} elements in all: use fewer, or an unbounded array",
@@ -146,7 +155,8 @@ class _Reader:
                 sections[-1].append(line)
         section_count = SECTIONS[self._kind]
         if len(sections) != section_count:
-            problem = f"{len(sections) - 1} separator lines ---, {section_count - 1} are needed: {PARTS[self._kind]}"
+            advice = SEPARATOR_ADVICE[self._kind]
+            problem = f"{len(sections) - 1} separator lines ---, {section_count - 1} are needed: {advice}"
             raise self._error(problem)
         return sections
 
@@ -177,12 +187,12 @@ class _Reader:
                     )
                 )
         section = Section(tuple(fields), tuple(constants))
-        if not self._reads_the_same(section):
+        if not self._has_same_meaning(section):
             raise self._error("a text with both kinds of quotation marks: use one kind in it")
         return section
 
-    def _reads_the_same(self, section: Section) -> bool:
-        """Return whether the rewritten lines have the same meaning as the original ones."""
+    def _has_same_meaning(self, section: Section) -> bool:
+        """Return whether the lines generated from a section have the same meaning as the original ones."""
         spec = self._parse(str(section))
         values = [constant.value for constant in section.constants] + [field.default for field in section.fields]
         return values == [constant.value for constant in spec.constants] + [f.default_value for f in spec.fields]
@@ -191,10 +201,10 @@ class _Reader:
         try:
             with contextlib.redirect_stderr(io.StringIO()):
                 return rosidl.parser().parse_message_string(self._package, self._name, line)
-        except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own
-            what = "a field is written `type name`, a constant `type NAME=value`"
+        except Exception as error:  # the parser raises NameError, TypeError, ValueError and its own errors
+            advice = "a field is written `type name`, a constant `type NAME=value`"
             reason = str(error)
-            raise self._error(what if reason == line else f"{reason} ({what})", line) from None
+            raise self._error(advice if reason == line else f"{reason} ({advice})", line) from None
 
     def _check_field(self, field: Any, line: str) -> None:
         if field.name in _C_WORDS or keyword.iskeyword(field.name):
@@ -206,7 +216,7 @@ class _Reader:
         count = kind.array_size if kind.is_array and kind.array_size and not kind.is_upper_bound else 1
         inner = None if kind.pkg_name is None else (kind.pkg_name, kind.type)
         if kind.pkg_name == self._package:
-            if kind.type not in self._own:
+            if kind.type not in self._own_messages:
                 raise self._error(
                     f"there is no msg/{kind.type}.msg in {self._package}: write it, or correct the name", line
                 )
@@ -217,6 +227,6 @@ class _Reader:
             self._check_value(field.default_value, line)
 
     def _check_value(self, value: object, line: str) -> None:
-        for single in value if isinstance(value, list) else [value]:
-            if isinstance(single, float) and not math.isfinite(single):
+        for element in value if isinstance(value, list) else [value]:
+            if isinstance(element, float) and not math.isfinite(element):
                 raise self._error("a value must be a finite number", line)

@@ -1,4 +1,4 @@
-"""Interface definitions as plain values, which write themselves anew: nothing in them is the author's own text."""
+"""Interface definitions as plain values, from which a text without the author's formatting can be generated."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ KINDS = ("msg", "srv", "action")
 
 
 class InterfaceError(Exception):
-    """Base of every error about an interface package."""
+    """Base class of all errors about an interface package."""
 
 
 class DefinitionError(InterfaceError):
-    """A definition is wrong, and its author can correct it; names the file and, if it is one, the line's text."""
+    """A definition is wrong, and its author can correct it. The message names the file and, if known, the line."""
 
     def __init__(self, file: str, problem: str, line: str = "") -> None:
-        where = f"{file}, line “{line[:120]}”" if line else file
-        super().__init__(f"{where}: {problem}")
+        location = f"{file}, line “{line[:120]}”" if line else file
+        super().__init__(f"{location}: {problem}")
         self.file, self.line = file, line
 
 
 Value = bool | int | float | str
-"""The value of a constant; that of a field may also be a list of them."""
+"""The value of a constant. The default of a field may also be a list of such values."""
 
 
 @dataclass(frozen=True)
@@ -30,19 +30,19 @@ class Field:
     """A field of a message."""
 
     name: str
-    base: str  # `float64`, `string`; of a message its name, `Header`
-    package: str | None = None  # of a message
-    max_length: int | None = None  # of a text
+    base: str  # a basic type, such as `float64`, or the name of a message, such as `Header`
+    package: str | None = None  # the package of a message
+    max_length: int | None = None  # the maximum length of a string
     is_array: bool = False
     size: int | None = None  # the number of elements of an array
-    at_most: bool = False  # whether `size` is a bound
+    is_upper_bound: bool = False  # whether `size` is only the maximum
     default: Value | list[Value] | None = None
 
     def __str__(self) -> str:
         """Return the line that defines the field."""
         base = f"{self.package}/{self.base}" if self.package else self.base
         length = "" if self.max_length is None else f"<={self.max_length}"
-        array = f"[{'<=' * self.at_most}{'' if self.size is None else self.size}]" if self.is_array else ""
+        array = f"[{'<=' * self.is_upper_bound}{'' if self.size is None else self.size}]" if self.is_array else ""
         return f"{base}{length}{array} {self.name}{'' if self.default is None else f' {_literal(self.default)}'}"
 
 
@@ -73,16 +73,16 @@ class Section:
 
 @dataclass(frozen=True)
 class Definition:
-    """One interface."""
+    """The definition of a message, service or action."""
 
-    path: str  # `msg/RobotStatus.msg`
+    path: str  # such as `msg/RobotStatus.msg`
     sections: tuple[Section, ...]
-    uses: tuple[tuple[str, str, str], ...]  # the messages of other packages in it, as (package, type, the line's text)
-    elements: int = 1  # that a fresh message makes room for
+    uses: tuple[tuple[str, str, str], ...]  # messages of other packages that it contains: (package, type, line's text)
+    elements: int = 1  # the number of elements for which a new message allocates memory
 
     @property
     def text(self) -> str:
-        """The definition, written anew."""
+        """The generated text of the definition."""
         return "---\n".join(map(str, self.sections))
 
 
@@ -95,9 +95,9 @@ def _literal(value: Value | list[Value]) -> str:
 
 
 def require_uses(definitions: tuple[Definition, ...], exists: Callable[[str, str | None], bool]) -> None:
-    """Raise a DefinitionError unless each message of another package is there.
+    """Raise a DefinitionError unless all messages of other packages that the definitions contain exist.
 
-    `exists` says whether a package is there (`None`), or has a message of a name.
+    `exists` returns whether a package has the given message, or whether the package exists if the message is None.
     """
     for definition in definitions:
         for package, name, line in definition.uses:
@@ -108,7 +108,7 @@ def require_uses(definitions: tuple[Definition, ...], exists: Callable[[str, str
 
 
 def packages_used(definitions: tuple[Definition, ...]) -> Iterator[str]:
-    """Yield the other packages that these definitions need, those that services and actions bring along included."""
+    """Yield the other packages that these definitions need, including those that every service or action needs."""
     yield from (package for definition in definitions for package, _, _ in definition.uses)
     kinds = {definition.path.split("/")[0] for definition in definitions}
     if kinds & {"srv", "action"}:

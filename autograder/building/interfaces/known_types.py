@@ -1,4 +1,4 @@
-"""The types that messages of a student's packages may hold: the student's own, and those of ROS's packages."""
+"""The types that messages of a student's packages may contain: the packages' own types, and those of ROS."""
 
 from __future__ import annotations
 
@@ -26,50 +26,54 @@ class KnownTypes:
     """Classes and descriptions of types, by their names.
 
     Attributes:
-        introspection: their descriptions in C.
+        introspection: their descriptions as C structures.
     """
 
     def __init__(self) -> None:
-        self._own: dict[tuple[str, ...], Any] = {}
+        self._student_classes: dict[tuple[str, ...], Any] = {}
         self._descriptions: dict[str, dict[str, Any]] = {}
         self.introspection = Introspection(self.members)
 
-    def add(self, kind: rosidl.NamespacedType, made: Any) -> None:
+    def add(self, kind: rosidl.NamespacedType, message_class: Any) -> None:
         """Add the class of a student's message."""
-        self._own[kind.namespaced_name()] = made
+        self._student_classes[kind.namespaced_name()] = message_class
 
     def members(self, kind: rosidl.NamespacedType) -> list[tuple[str, rosidl.AbstractType]]:
         """Return the names and types of a message's members."""
-        own = self._own.get(kind.namespaced_name())
-        if own is not None:
-            return list(own._members.items())
-        real = _real(kind)
-        return list(zip(real.get_fields_and_field_types(), real.SLOT_TYPES, strict=True)) or [(EMPTY.name, EMPTY.type)]
+        student_class = self._student_classes.get(kind.namespaced_name())
+        if student_class is not None:
+            return list(student_class._members.items())
+        ros_class = _ros_class(kind)
+        return list(zip(ros_class.get_fields_and_field_types(), ros_class.SLOT_TYPES, strict=True)) or [
+            (EMPTY.name, EMPTY.type)
+        ]
 
     def make(self, kind: rosidl.NamespacedType, values: Mapping[str, Any] | None = None) -> Any:
-        """Make a message, of the values of all members where they are given."""
-        own = self._own.get(kind.namespaced_name())
-        if own is not None:
-            return own() if values is None else own._of(values)
-        real = _real(kind)
-        return real(**{name: value for name, value in (values or {}).items() if name != EMPTY.name})
+        """Create a message, with the values of all members if they are given."""
+        student_class = self._student_classes.get(kind.namespaced_name())
+        if student_class is not None:
+            return student_class() if values is None else student_class._from_values(values)
+        ros_class = _ros_class(kind)
+        return ros_class(**{name: value for name, value in (values or {}).items() if name != EMPTY.name})
 
     def describe(self, models: Iterable[Any]) -> None:
-        """Add the descriptions of a package's messages, services and actions, and of all that they hold."""
-        described: dict[str, Any] = {}
+        """Add the descriptions of a package's messages, services and actions, and of all types that they contain."""
+        structures: dict[str, Any] = {}
         for model in models:
-            _ADD[type(model)](model, described)
-        for name, each in described.items():
-            self._descriptions[name] = serialize_individual_type_description(each.namespaced_type, each.members)
-        for each in described.values():
-            self._describe_below(member.type for member in each.members)
+            _ADD[type(model)](model, structures)
+        for name, structure in structures.items():
+            self._descriptions[name] = serialize_individual_type_description(
+                structure.namespaced_type, structure.members
+            )
+        for structure in structures.values():
+            self._describe_members(member.type for member in structure.members)
 
     def hash(self, kind: rosidl.NamespacedType) -> str:
-        """Return a type's hash, as rosidl would have it: `RIHS01_` and 64 hexadecimal digits."""
+        """Return a type's hash as rosidl computes it: `RIHS01_` and 64 hexadecimal digits."""
         name = "/".join(kind.namespaced_name())
         return str(calculate_type_hash(extract_full_type_description(name, self._descriptions)))
 
-    def _describe_below(self, kinds: Iterable[rosidl.AbstractType]) -> None:
+    def _describe_members(self, kinds: Iterable[rosidl.AbstractType]) -> None:
         for kind in kinds:
             value = kind.value_type if isinstance(kind, rosidl.AbstractNestedType) else kind
             if not isinstance(value, rosidl.NamespacedType) or "/".join(value.namespaced_name()) in self._descriptions:
@@ -78,9 +82,9 @@ class KnownTypes:
             self._descriptions["/".join(value.namespaced_name())] = serialize_individual_type_description(
                 value, members
             )
-            self._describe_below(member.type for member in members)
+            self._describe_members(member.type for member in members)
 
 
-def _real(kind: rosidl.NamespacedType) -> Any:
-    """Return the class of a message of one of ROS's packages."""
+def _ros_class(kind: rosidl.NamespacedType) -> Any:
+    """Return the class of a ROS package's message."""
     return getattr(import_module(".".join(kind.namespaces)), kind.name)

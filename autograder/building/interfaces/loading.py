@@ -1,4 +1,4 @@
-"""A student's interface packages as message classes of plain values, made of the texts of their definitions."""
+"""Loads a student's interface packages from the texts of their definitions, as message classes with plain values."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from autograder.exceptions import StudentError
 from autograder.submission.exercise_stubs import explain
 from autograder.submission.packages import find_packages
 
-if TYPE_CHECKING:  # the generators' process imports this package, too, and no ROS
+if TYPE_CHECKING:  # the process of the generators also imports this package, but not ROS
     from autograder.run.workspace import Workspace
 
 Texts = tuple[tuple[str, str], ...]
-"""Definitions by their paths in a package, such as `msg/RobotStatus.msg`, sorted."""
+"""Sorted pairs of a definition's path in its package, such as `msg/RobotStatus.msg`, and the definition's text."""
 
 
 def load_interfaces(workspace: Workspace, package: str) -> Any:
-    """Return the classes of an interface package of a student's workspace: `.msg.Name`, `.srv.Name`, `.action.Name`.
+    """Return the classes of an interface package in a student's workspace: `.msg.Name`, `.srv.Name`, `.action.Name`.
 
-    They are the same objects for the same texts.
+    For the same texts, two calls return the same objects.
 
     Raises:
-        StudentError: the package or its definitions are missing, or wrong; the sentence says where.
+        StudentError: the package or its definitions are missing or wrong.
     """
     source = workspace.root / "src"
     packages, broken = find_packages(source)
@@ -54,46 +54,48 @@ def classes(packages: tuple[tuple[str, Texts], ...]) -> Any:
 def _gather(
     packages: dict[str, Path],
     package: str,
-    above: tuple[str, ...],
+    dependants: tuple[str, ...],
     texts: dict[str, Texts],
     elements: dict[tuple[str, str], int],
     ros: tuple[Path, ...],
 ) -> None:
-    """Add the texts of a package, and the elements of its messages, after those of the packages that it uses."""
+    """Add a package's texts to `texts` and its messages' sizes to `elements`, after those of its dependencies."""
     folder = packages.get(package)
     if folder is None:
         sentence = f"The package {package} is missing: src holds {', '.join(sorted(packages)) or 'no package at all'}."
         raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
-    if package in above:
-        sentence = f"The packages {' and '.join(sorted(above))} use each other's messages: let only one use the other."
+    if package in dependants:
+        sentence = (
+            f"The packages {' and '.join(sorted(dependants))} use each other's messages: let only one use the other."
+        )
         raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
     if package in texts:
         return
     try:
         if exists(ros, package, None):
             raise DefinitionError("package.xml", f"ROS has a package {package} of its own: give yours another name")
-        own = _texts(folder)
-        definitions = read(package, own)
+        own_texts = _texts(folder)
+        definitions = read(package, own_texts)
         for name in sorted({name for definition in definitions for name, _, _ in definition.uses} & set(packages)):
-            _gather(packages, name, (*above, package), texts, elements, ros)
+            _gather(packages, name, (*dependants, package), texts, elements, ros)
         _require_uses(definitions, texts, ros)
-        definitions = read(package, own, elements)
+        definitions = read(package, own_texts, elements)
     except DefinitionError as error:
         sentence = f"src/{folder.name}: {error}."
         raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence)) from None
-    texts[package] = tuple(sorted(own.items()))
-    elements.update({(package, Path(each.path).stem): each.elements for each in definitions if each.path[:3] == "msg"})
+    texts[package] = tuple(sorted(own_texts.items()))
+    elements.update({(package, Path(d.path).stem): d.elements for d in definitions if d.path[:3] == "msg"})
 
 
 def _require_uses(definitions: tuple[Definition, ...], texts: dict[str, Texts], ros: tuple[Path, ...]) -> None:
-    """Raise a DefinitionError unless each message of another package is there."""
+    """Raise a DefinitionError unless all messages of other packages that the definitions contain exist."""
 
-    def is_there(package: str, message: str | None) -> bool:
+    def exists_anywhere(package: str, message: str | None) -> bool:
         if package in texts:
             return message is None or f"msg/{message}.msg" in dict(texts[package])
         return exists(ros, package, message)
 
-    require_uses(definitions, is_there)
+    require_uses(definitions, exists_anywhere)
 
 
 def _texts(folder: Path) -> dict[str, str]:

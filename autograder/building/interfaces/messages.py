@@ -1,7 +1,7 @@
-"""Message classes of plain Python values, made of parsed definitions: rclpy takes them, and no code is generated.
+"""Creates message classes from parsed definitions. They hold plain values, and rclpy needs no generated code for them.
 
-They look like rosidl's classes: fields with their defaults, constants, `Request` and `Response` of a service, `Goal`,
-`Result` and `Feedback` of an action. Messages of ROS's own packages in them are the real ones.
+They have the attributes of rosidl's classes: fields with their defaults, constants, `Request` and `Response` of a
+service, `Goal`, `Result` and `Feedback` of an action. For messages of ROS packages, fields use the real classes.
 """
 
 from __future__ import annotations
@@ -25,27 +25,27 @@ from autograder.exceptions import StudentError
 
 
 class FieldError(StudentError, AttributeError):
-    """A student's package lacks an interface or a field that the contract asks for, or has it with another type."""
+    """A student's package lacks an interface or a field that the contract requires, or has it with another type."""
 
-    def __init__(self, what: str, problem: str) -> None:
-        super().__init__(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, f"{what} {problem}."))
+    def __init__(self, name: str, problem: str) -> None:
+        super().__init__(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, f"{name} {problem}."))
 
 
 class Interfaces(SimpleNamespace):
     """The messages, services or actions of a package, by name."""
 
-    _where: str
+    _label: str
 
     def __getattr__(self, name: str) -> Any:
-        raise AttributeError(name) if name.startswith("_") else FieldError(self._where, f"has no {name}")
+        raise AttributeError(name) if name.startswith("_") else FieldError(self._label, f"has no {name}")
 
 
 class PlainMessage:
-    """Base of the message classes. Its own names begin with an underscore, which no field and no constant does."""
+    """Base of the message classes. Unlike fields and constants, its attributes begin with an underscore."""
 
     _type: ClassVar[rosidl.NamespacedType]
     _members: ClassVar[Mapping[str, rosidl.AbstractType]]
-    _defaults: ClassVar[Mapping[str, Callable[[], Any]]]  # of the fields
+    _defaults: ClassVar[Mapping[str, Callable[[], Any]]]  # functions that create the fields' initial values
     _known: ClassVar[KnownTypes]
 
     def __init__(self, **values: Any) -> None:
@@ -77,19 +77,19 @@ class PlainMessage:
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Return the fields, in their order, with the names that rosidl has for their types."""
+        """Return the fields in order, each with rosidl's name for its type."""
         return {name: structures.describe(cls._members[name]) for name in cls._defaults}
 
     @classmethod
-    def _of(cls, values: Mapping[str, Any]) -> PlainMessage:
-        """Make a message of the values of all members."""
+    def _from_values(cls, values: Mapping[str, Any]) -> PlainMessage:
+        """Create a message from the values of all members."""
         message = cls.__new__(cls)
         vars(message).update({name: values[name] for name in cls._defaults})
         return message
 
 
 def to_bytes(message: PlainMessage) -> bytes:
-    """Return a message's CDR, without a header. Raises ValueError where a value does not fit."""
+    """Return a message's CDR, without a header. Raise a ValueError if a value does not match its type."""
     kind = type(message)
     writer = cdr.Writer(kind._known.members)
     writer.write(kind._type, message)
@@ -97,60 +97,60 @@ def to_bytes(message: PlainMessage) -> bytes:
 
 
 def from_bytes(kind: type[PlainMessage], data: bytes) -> PlainMessage:
-    """Return the message of a CDR. Raises ValueError where it does not fit."""
+    """Return the message whose CDR is `data`. Raise a ValueError if the bytes do not match the type."""
     message: PlainMessage = cdr.Reader(data, kind._known.members, kind._known.make).read(kind._type)
     return message
 
 
 def add_package(package: str, definitions: tuple[Definition, ...], known: KnownTypes) -> SimpleNamespace:
-    """Make the classes of a package and add them to those that are known.
+    """Create the classes of a package, and add them to the known types.
 
     Returns:
-        The classes as the package's modules would hold them: `.msg.RobotStatus`, `.srv.CheckTrip`, ... One that is not
-        it raises a StudentError.
+        The classes as attributes, as in the package's modules: `.msg.RobotStatus`, `.srv.CheckTrip`, ... Reading an
+        attribute that does not exist raises a StudentError.
     """
     models = [structures.model(package, definition) for definition in definitions]
     known.describe(models)
-    kinds = {kind: Interfaces(_where=f"{package}/{kind}") for kind in KINDS}
+    kinds = {kind: Interfaces(_label=f"{package}/{kind}") for kind in KINDS}
     for model, definition in zip(models, definitions, strict=True):
-        made = _made(model, definition.sections, known)
-        setattr(kinds[definition.path.split("/")[0]], made.__name__, made)
+        interface = _interface_class(model, definition.sections, known)
+        setattr(kinds[definition.path.split("/")[0]], interface.__name__, interface)
     return SimpleNamespace(**kinds)
 
 
-def _made(model: Any, sections: tuple[Section, ...], known: KnownTypes) -> Any:
+def _interface_class(model: Any, sections: tuple[Section, ...], known: KnownTypes) -> Any:
     """Return the class of a message, service or action."""
     if isinstance(model, rosidl.Message):
-        return _message(model, sections[0], known)
+        return _message_class(model, sections[0], known)
     if isinstance(model, rosidl.Service):
-        return _service(model, sections, known)
+        return _service_class(model, sections, known)
     goal, result, feedback = (
-        _message(message, section, known)
+        _message_class(message, section, known)
         for message, section in zip((model.goal, model.result, model.feedback), sections, strict=True)
     )
-    nothing = (Section(), Section())
+    empty = (Section(), Section())
     implementation = SimpleNamespace(
-        SendGoalService=_service(model.send_goal_service, nothing, known),
-        GetResultService=_service(model.get_result_service, nothing, known),
+        SendGoalService=_service_class(model.send_goal_service, empty, known),
+        GetResultService=_service_class(model.get_result_service, empty, known),
         CancelGoalService=CancelGoal,
-        FeedbackMessage=_message(model.feedback_message, Section(), known),
+        FeedbackMessage=_message_class(model.feedback_message, Section(), known),
         GoalStatusMessage=GoalStatusArray,
     )
     parts = {"Goal": goal, "Result": result, "Feedback": feedback, "Impl": implementation}
-    return _class(type, model.namespaced_type, (), parts)
+    return _make_class(type, model.namespaced_type, (), parts)
 
 
-def _message(message: rosidl.Message, section: Section, known: KnownTypes) -> Any:
-    """Return a message's class; `section` has its constants and the defaults of its fields."""
+def _message_class(message: rosidl.Message, section: Section, known: KnownTypes) -> Any:
+    """Return a message's class. `section` contains its constants and the defaults of its fields."""
     kind = message.structure.namespaced_type
-    given = {field.name: field.default for field in section.fields}
+    default_values = {field.name: field.default for field in section.fields}
     members = {member.name: member.type for member in message.structure.members}
     content = {
         **{constant.name: constant.value for constant in section.constants},
         "_type": kind,
         "_members": members,
         "_defaults": {
-            name: defaults.of(inner, given.get(name), known.make)
+            name: defaults.default_factory(inner, default_values.get(name), known.make)
             for name, inner in members.items()
             if name != structures.EMPTY.name
         },
@@ -159,16 +159,20 @@ def _message(message: rosidl.Message, section: Section, known: KnownTypes) -> An
 
     def support() -> dict[str, Any]:
         type_support.require_known_layout()
-        return type_support.message_support(_message_type(kind, known), to_bytes, lambda data: from_bytes(made, data))
+        return type_support.message_support(
+            _message_type(kind, known), to_bytes, lambda data: from_bytes(message_class, data)
+        )
 
-    made = _class(_metaclass(support, type_support.NAMES), kind, (PlainMessage,), content)
-    known.add(kind, made)
-    return made
+    message_class = _make_class(_metaclass(support, type_support.NAMES), kind, (PlainMessage,), content)
+    known.add(kind, message_class)
+    return message_class
 
 
-def _service(service: rosidl.Service, sections: tuple[Section, ...], known: KnownTypes) -> Any:
+def _service_class(service: rosidl.Service, sections: tuple[Section, ...], known: KnownTypes) -> Any:
     messages = (service.request_message, service.response_message)
-    request, response = (_message(message, section, known) for message, section in zip(messages, sections, strict=True))
+    request, response = (
+        _message_class(message, section, known) for message, section in zip(messages, sections, strict=True)
+    )
 
     def support() -> dict[str, Any]:
         for part in (request, response):
@@ -179,7 +183,7 @@ def _service(service: rosidl.Service, sections: tuple[Section, ...], known: Know
         return type_support.service_support(type_name, *parts)
 
     parts = {"Request": request, "Response": response}
-    return _class(_metaclass(support, ("_TYPE_SUPPORT",)), service.namespaced_type, (), parts)
+    return _make_class(_metaclass(support, ("_TYPE_SUPPORT",)), service.namespaced_type, (), parts)
 
 
 def _message_type(kind: rosidl.NamespacedType, known: KnownTypes) -> MessageType:
@@ -187,13 +191,13 @@ def _message_type(kind: rosidl.NamespacedType, known: KnownTypes) -> MessageType
     return MessageType(package, family, name, known.hash(kind), addressof(known.introspection.support(kind)))
 
 
-def _class(meta: Any, kind: rosidl.NamespacedType, bases: tuple[type, ...], content: dict[str, Any]) -> Any:
+def _make_class(meta: Any, kind: rosidl.NamespacedType, bases: tuple[type, ...], content: dict[str, Any]) -> Any:
     module = ".".join(kind.namespaces)
     return meta(kind.name, bases, {**content, "__module__": module, "__doc__": f"{module}.{kind.name}"})
 
 
 def _metaclass(support: Callable[[], dict[str, Any]], names: tuple[str, ...]) -> type:
-    """Return a metaclass in which rclpy finds the type support, which is made when it first asks."""
+    """Return a metaclass for rclpy, whose type support is created on first use."""
 
     def import_type_support(meta: type) -> None:
         if meta._TYPE_SUPPORT is None:  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""Builds the prefix of one of our interface packages from its texts, or takes it from the cache."""
+"""Builds a prefix with an interface package of this project from its definitions, or takes it from the cache."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ from autograder.ros import RosEnvironment, activate
 from autograder.ros.environment import without_wheel_bootstrap
 
 HERE = Path(__file__).parent
-SECONDS = 120.0
+BUILD_SECONDS = 120.0  # maximum real time of a build
 RECIPE = "recipe.json"
-OWN = (
+BUILD_MODULES = (
     "building/interfaces/generate",
     "building/interfaces/compile",
     "submission/packages",
     "ros/environment",
-)  # the modules that make a prefix
+)  # the modules that determine the content of a prefix
 
 
 class GenerationError(InterfaceError):
-    """The definitions read well, but the generators or the compiler would not have them."""
+    """The generators or the compiler rejected definitions that `read` accepts."""
 
 
 def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None) -> Path:
-    """Return a prefix with the package built from its definitions, from the cache if it was built before.
+    """Build a package from its definitions, unless the cache contains it. Return the prefix with the package.
 
-    The prefix stays until the cache is full and another one is built.
+    The prefix exists at least until another one is built.
 
     Args:
-        package: its name.
-        files: texts by their path in the package: `msg/*.msg`, `srv/*.srv`, `action/*.action`.
-        cache: where to keep it, this user's own cache by default.
+        package: the package's name.
+        files: the definitions' texts by their paths in the package: `msg/*.msg`, `srv/*.srv`, `action/*.action`.
+        cache: the cache for the prefix, by default this user's.
 
     Raises:
-        DefinitionError: a definition is wrong; names file and line.
+        DefinitionError: a definition is wrong.
         GenerationError: the generators or the compiler failed.
         RosError: no usable ROS 2 was found.
     """
@@ -57,19 +57,19 @@ def build(package: str, files: Mapping[str, str], *, cache: Cache | None = None)
         "uses": sorted(set(packages_used(definitions)) - {package}),
         "prefixes": [str(path) for path in ros.prefixes],
     }
-    identity_text = json.dumps([recipe, identity(ros), _own_version()], sort_keys=True)
+    identity_text = json.dumps([recipe, identity(ros), _build_modules_digest()], sort_keys=True)
     key = hashlib.sha256(identity_text.encode()).hexdigest()[:40]
     return (cache or Cache.default("interfaces")).get(key, partial(_make, package, json.dumps(recipe)))
 
 
 def exists(prefixes: tuple[Path, ...], package: str, message: str | None) -> bool:
-    """Return whether a package with messages is in one of the prefixes, or a message of it."""
+    """Return whether one of the prefixes contains a message, or any message of the package if `message` is None."""
     folders = (prefix / "share" / package / "msg" for prefix in prefixes)
     return any((folder if message is None else folder / f"{message}.idl").exists() for folder in folders)
 
 
 def identity(ros: RosEnvironment) -> dict[str, object]:
-    """Return the dependencies of a built package besides its content: the Python, and the versions of ROS."""
+    """Return what a built package depends on besides its definitions: the interpreter, and the versions of ROS."""
     return {
         "prefixes": [str(prefix) for prefix in ros.prefixes],
         "python": [sys.executable, sys.version, sysconfig.get_config_var("EXT_SUFFIX")],
@@ -79,8 +79,8 @@ def identity(ros: RosEnvironment) -> dict[str, object]:
 
 @lru_cache(maxsize=1)
 def _versions(ros: RosEnvironment) -> list[str]:
-    """Name the installed ROS: each wheel's version, or each sourced package's manifest by its size and time."""
-    if ros.kind == "wheels":  # from the names of the folders: reading their content takes half a second
+    """Return the versions of ROS's wheels or, for a sourced ROS, the size and time of each package's manifest."""
+    if ros.kind == "wheels":  # the folders' names are used, because reading their content takes half a second
         versions = [path.stem for path in ros.rclpy.parent.glob("*.dist-info")]
         return sorted(name for name in versions if name.lower().startswith(("ros-", "ros_", "numpy")))
     manifests = [path for prefix in ros.prefixes for path in sorted(prefix.glob("share/*/package.xml"))]
@@ -88,26 +88,29 @@ def _versions(ros: RosEnvironment) -> list[str]:
 
 
 @lru_cache(maxsize=1)
-def _own_version() -> str:
-    return hashlib.sha256(b"".join((HERE.parents[1] / f"{name}.py").read_bytes() for name in OWN)).hexdigest()
+def _build_modules_digest() -> str:
+    return hashlib.sha256(b"".join((HERE.parents[1] / f"{name}.py").read_bytes() for name in BUILD_MODULES)).hexdigest()
 
 
 def _make(package: str, recipe: str, prefix: Path) -> None:
     (prefix / RECIPE).write_text(recipe)
-    path = [str(HERE.parents[2]), *filter(None, [os.environ.get("PYTHONPATH")])]  # same module paths
+    path = [
+        str(HERE.parents[2]),
+        *filter(None, [os.environ.get("PYTHONPATH")]),
+    ]  # so that the process imports the same modules
     try:
-        done = subprocess.run(
+        completed = subprocess.run(
             [sys.executable, "-m", "autograder.building.interfaces.generate", str(prefix)],
             capture_output=True,
             stdin=subprocess.DEVNULL,
             text=True,
             errors="replace",
-            timeout=SECONDS,
-            cwd="/",  # `python -m` imports from the folder it is started in
+            timeout=BUILD_SECONDS,
+            cwd="/",  # because `python -m` imports modules from the current folder
             env={**without_wheel_bootstrap(os.environ), "PYTHONPATH": os.pathsep.join(path)},
         )
     except subprocess.TimeoutExpired:
-        raise GenerationError(f"{package}: building its interfaces took more than {SECONDS:.0f} s") from None
-    if done.returncode != 0:
-        end = "\n".join(done.stderr.strip().splitlines()[-12:])
-        raise GenerationError(f"{package}: its interfaces cannot be built. {end[:2000]}")
+        raise GenerationError(f"{package}: building its interfaces took more than {BUILD_SECONDS:.0f} s") from None
+    if completed.returncode != 0:
+        last_lines = "\n".join(completed.stderr.strip().splitlines()[-12:])
+        raise GenerationError(f"{package}: its interfaces cannot be built. {last_lines[:2000]}")

@@ -1,11 +1,11 @@
-"""The parser of ROS's own build, fit for strangers' definitions."""
+"""The parser that ROS's build uses, changed so that untrusted definitions cannot slow it down."""
 
 from __future__ import annotations
 
 import re
 from typing import Any
 
-# rosidl_adapter's rule for the name of a constant. Its own expression takes exponential time on a wrong name.
+# rosidl_adapter's rule for names of constants. Its own regular expression takes exponential time for a wrong name.
 CONSTANT_NAME = re.compile("^(?!.*__)(?!.*_$)[A-Z][A-Z0-9_]*$")
 
 
@@ -18,5 +18,5 @@ def parser() -> Any:
 
 
 def without_comments(text: str) -> str:
-    """Return a definition whose comments are empty: the parser looks for units in them, in quadratic time."""
+    """Empty the comments of a definition, because the parser takes quadratic time to search them for units."""
     return "".join(f"{line.partition('#')[0]}{'#' * ('#' in line)}\n" for line in text.splitlines())

@@ -1,4 +1,4 @@
-"""Parsed definitions as rosidl's own model of types: structures with members, those that an action implies included."""
+"""Converts parsed definitions to rosidl's model of types: structures with members, including those of actions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from rosidl_parser import definition as rosidl
 
 from autograder.building.interfaces.definitions import Definition, Field, Section
 
-EMPTY = rosidl.Member(rosidl.BasicType("uint8"), "structure_needs_at_least_one_member")  # DDS has no empty structures
+EMPTY = rosidl.Member(rosidl.BasicType("uint8"), "structure_needs_at_least_one_member")  # DDS allows no empty structure
 _SUFFIXES = {"srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
 _BASIC = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}
 
@@ -43,7 +43,7 @@ def type_of(field: Field) -> rosidl.AbstractType:
         return value
     if field.size is None:
         return rosidl.UnboundedSequence(value)
-    return (rosidl.BoundedSequence if field.at_most else rosidl.Array)(value, field.size)
+    return (rosidl.BoundedSequence if field.is_upper_bound else rosidl.Array)(value, field.size)
 
 
 def _structure(name: rosidl.NamespacedType, section: Section) -> rosidl.Structure:
@@ -51,7 +51,7 @@ def _structure(name: rosidl.NamespacedType, section: Section) -> rosidl.Structur
 
 
 def describe(kind: rosidl.AbstractType) -> str:
-    """Return a field's type as `get_fields_and_field_types` of rosidl's Python classes has it."""
+    """Return the name of a field's type as in `get_fields_and_field_types` of rosidl's Python classes."""
     value = kind.value_type if isinstance(kind, rosidl.AbstractNestedType) else kind
     if isinstance(value, rosidl.NamespacedType):
         text = f"{value.namespaces[0]}/{value.name}"

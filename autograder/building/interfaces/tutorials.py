@@ -1,7 +1,8 @@
-"""Installs the interface packages of ROS's own tutorials beside the wheels, which lack them.
+"""Installs the interface packages of ROS's tutorials, which have no wheels.
 
-They are built from `tutorials.yaml` into the prefix of this environment, for Python programs: they lack what a CMake
-package that uses them would need. Set-up runs this module. A sourced ROS 2 has the real packages, and nothing happens.
+They are built from `tutorials.yaml` into the prefix of this environment, for Python programs only: they do not contain
+the files that CMake packages need. Set-up runs this module. For a sourced ROS 2, which has the real packages, it
+does nothing.
 """
 
 from __future__ import annotations
@@ -20,53 +21,54 @@ from autograder.building.interfaces.prefix import build
 from autograder.ros import RosError, find
 
 DEFINITIONS = Path(__file__).with_name("tutorials.yaml")
-INSTALLED = ("share", "lib", "include")
+FOLDERS = ("share", "lib", "include")
 
 
 def packages() -> dict[str, dict[str, str]]:
-    """Return each package's definitions, text by path, as `build` takes them."""
+    """Return the definitions of each package in the form that `build` accepts: their texts by path."""
     definitions: dict[str, dict[str, str]] = yaml.safe_load(DEFINITIONS.read_text(encoding="utf-8"))
     return definitions
 
 
 def missing(prefix: Path) -> dict[str, dict[str, str]]:
-    """Return the packages that are not in `prefix`, or are there with other definitions, as `packages` does."""
-    return {name: files for name, files in packages().items() if not _installed(prefix, name, files)}
+    """Return those of `packages()` that `prefix` does not contain, or contains with other definitions."""
+    return {name: files for name, files in packages().items() if not _is_installed(prefix, name, files)}
 
 
 def install(prefix: Path) -> list[str]:
     """Build the packages that are missing in the virtual environment `prefix`; return their names."""
-    lacking = missing(prefix)
+    packages_to_build = missing(prefix)
     with tempfile.TemporaryDirectory() as scratch:
-        for name, files in lacking.items():
-            built = build(name, files, cache=Cache(Path(scratch)))
-            for folder in INSTALLED:
-                shutil.copytree(built / folder, prefix / folder, dirs_exist_ok=True, copy_function=_replace)
-    return list(lacking)
+        for name, files in packages_to_build.items():
+            built_prefix = build(name, files, cache=Cache(Path(scratch)))
+            for folder in FOLDERS:
+                shutil.copytree(built_prefix / folder, prefix / folder, dirs_exist_ok=True, copy_function=_replace)
+    return list(packages_to_build)
 
 
-def _installed(prefix: Path, package: str, files: dict[str, str]) -> bool:
-    texts = {prefix / "share" / package / each.path: each.text for each in read(package, files)}
+def _is_installed(prefix: Path, package: str, files: dict[str, str]) -> bool:
+    share = prefix / "share" / package
+    texts = {share / definition.path: definition.text for definition in read(package, files)}
     return all(path.is_file() and path.read_text(encoding="utf-8") == text for path, text in texts.items())
 
 
 def _replace(source: str, target: str) -> None:
-    """Copy a file to a new one in the target's place: a library that a process has loaded must not change."""
+    """Put a copy of the source in the target's place: the file of a library that a process uses must not change."""
     new = Path(f"{target}.new")
     shutil.copy2(source, new)
     new.replace(target)
 
 
 def main() -> int:
-    """Install them into this environment; without a compiler, say how to do that later: much needs neither."""
+    """Install the packages in this environment. Without a compiler, print how to do that later, and succeed."""
     prefix = Path(sys.prefix)
     try:
-        if find().kind != "wheels" or not (lacking := missing(prefix)):
+        if find().kind != "wheels" or not (missing_packages := missing(prefix)):
             return 0
-        names = ", ".join(lacking)
+        names = ", ".join(missing_packages)
         if shutil.which("g++") is None:
-            again = f"{sys.executable} -m autograder.building.interfaces.tutorials"
-            print(f"g++ is missing, so {names} are not installed; once it is there, run {again}")
+            command = f"{sys.executable} -m autograder.building.interfaces.tutorials"
+            print(f"g++ is missing, so {names} are not installed; once it is there, run {command}")
             return 0
         print(f"building {names}", flush=True)
         install(prefix)

@@ -1,11 +1,12 @@
-"""Type supports without generated code: they transport a message as bytes, so that no type needs its own library.
+"""Creates type supports without generated code. They transport a message as bytes, so that no type needs a library.
 
-rclpy and rmw_fastrtps_cpp know a type by C structures with its name, its hash and functions that convert it. A library
-of rosidl contains them as generated code. Here they are created at run time, for any name, and the functions only move
-bytes. `messages` interprets the bytes. A C pointer to a message is the number of an entry in `_messages`.
+For rclpy and rmw_fastrtps_cpp, a type consists of C structures with its name, its hash and functions that convert its
+messages. rosidl generates these as code. Here they are created at run time, for any name, and the functions only copy
+bytes, which `messages` interprets. Instead of a C pointer to a message, the functions get the number of an entry in
+`_messages`.
 
-rmw_fastrtps_cpp passes the bytes in a `Cdr` of Fast CDR 2, whose end is private. This module reads it from memory, at
-an offset from members that public functions of `Cdr` also return, which verifies the layout.
+rmw_fastrtps_cpp passes the bytes in a `Cdr` of Fast CDR 2, in which the end of the bytes is a private member. This
+module reads it from memory. To verify the layout, it compares other members with what public functions return.
 """
 
 from __future__ import annotations
@@ -22,14 +23,15 @@ from autograder.building.interfaces.cdr import MAX_BYTES
 from autograder.building.interfaces.introspection import IDENTIFIER, MessageSupport
 from autograder.exceptions import GraderError
 
-LITTLE_ENDIAN = b"\x00\x01"  # how a header of CDR begins
-PLACES = 18 * 8  # where a `Cdr` keeps its places in the buffer
-HEADER = 4  # bytes before the message's own
-INITIAL = 256  # bytes that a history makes room for in advance; it grows
+LITTLE_ENDIAN = b"\x00\x01"  # the first bytes of a CDR header
+POSITIONS_OFFSET = 18 * 8  # bytes of a `Cdr` before its positions in the buffer
+HEADER_SIZE = 4  # bytes of a CDR header
+INITIAL_SIZE = 256  # bytes that a history allocates for a message in advance; it allocates more if needed
+# The attributes that rclpy needs in the metaclass of a message class.
 NAMES = ("_CREATE_ROS_MESSAGE", "_CONVERT_FROM_PY", "_CONVERT_TO_PY", "_DESTROY_ROS_MESSAGE", "_TYPE_SUPPORT")
 
-_keep: list[Any] = []  # objects that C code points to, for the lifetime of the process
-_messages: dict[int, bytes | None] = {}  # None for one that could not be taken
+_kept_alive: list[Any] = []  # objects that C code refers to until the process ends
+_messages: dict[int, bytes | None] = {}  # the bytes of each message; None if they could not be read
 _numbers = itertools.count(1)
 
 _Serialize = ctypes.CFUNCTYPE(c_bool, c_void_p, c_void_p)
@@ -87,12 +89,12 @@ class MessageType(TypeName):
 def message_support(
     message: MessageType, to_bytes: Callable[[Any], bytes], from_bytes: Callable[[bytes], Any]
 ) -> dict[str, Any]:
-    """Return the attributes of a metaclass by which rclpy knows a message class.
+    """Return the attributes that rclpy needs in the metaclass of a message class.
 
     Args:
-        message: its type.
-        to_bytes: returns the CDR of a message, without a header; a ValueError is an error of rclpy's.
-        from_bytes: returns the message of a CDR; where it raises a ValueError, rclpy takes None.
+        message: the message's type.
+        to_bytes: returns the CDR of a message, without a header. If it raises a ValueError, rclpy raises an error.
+        from_bytes: returns the message of a CDR. If it raises a ValueError, rclpy receives None.
     """
 
     def create() -> int:
@@ -118,14 +120,14 @@ def message_support(
         _messages.pop(number, None)
 
     functions = (_Create(create), _FromPython(from_python), _ToPython(to_python), _Destroy(destroy))
-    addresses = [*map(_address, functions), ctypes.addressof(_message(message))]
-    _keep.append(functions)
+    addresses = [*map(_address, functions), ctypes.addressof(_message_support(message))]
+    _kept_alive.append(functions)
     return dict(zip(NAMES, map(_capsule, addresses), strict=True))
 
 
 @cache
 def require_known_layout() -> None:
-    """Raise a GraderError if the bytes of a message are not found in this Fast CDR: no message shall get lost."""
+    """Raise a GraderError if this Fast CDR has another layout, so that no message is lost silently."""
     from rclpy.serialization import deserialize_message
 
     name = MessageType("autograder", "msg", "Probe", f"RIHS01_{'0' * 64}")
@@ -135,39 +137,39 @@ def require_known_layout() -> None:
 
 
 def service_support(service: TypeName, request: MessageType, response: MessageType) -> dict[str, Any]:
-    """Return the attribute of a metaclass by which rclpy knows a service class."""
-    parts = [ctypes.addressof(_message(name)) for name in (request, response)]
-    borrowed = _borrowed()["service"]
+    """Return the attribute that rclpy needs in the metaclass of a service class."""
+    parts = [ctypes.addressof(_message_support(name)) for name in (request, response)]
+    template = _templates()["service"]
     callbacks = _ServiceCallbacks(_namespace(service), service.name.encode(), *parts)
     support = _Service(
-        *(borrowed.identifier, ctypes.addressof(callbacks), borrowed.handle, *parts, None, None, None),
-        *(_hash(service.hash), borrowed.description, borrowed.sources),
+        *(template.identifier, ctypes.addressof(callbacks), template.handle, *parts, None, None, None),
+        *(_hash(service.hash), template.description, template.sources),
     )
-    _keep.extend((callbacks, support))
+    _kept_alive.extend((callbacks, support))
     return {"_TYPE_SUPPORT": _capsule(ctypes.addressof(support))}
 
 
 @cache
-def _message(message: MessageType) -> MessageSupport:
-    borrowed = _borrowed()["message"]
+def _message_support(message: MessageType) -> MessageSupport:
+    template = _templates()["message"]
     serialize, deserialize, size, maximum_size = _functions()
     callbacks = _MessageCallbacks(
         *(_namespace(message), message.name.encode(), serialize, deserialize, size, maximum_size, None)
     )
     support = MessageSupport(
-        *(borrowed.identifier, ctypes.addressof(callbacks), None, _hash(message.hash)),
-        *(borrowed.description, borrowed.sources),
+        *(template.identifier, ctypes.addressof(callbacks), None, _hash(message.hash)),
+        *(template.description, template.sources),
     )
-    own = {ctypes.string_at(borrowed.identifier): ctypes.addressof(support), IDENTIFIER: message.introspection}
-    handle = _Handle(lambda _, identifier: own.get(identifier, 0))
+    handles = {ctypes.string_at(template.identifier): ctypes.addressof(support), IDENTIFIER: message.introspection}
+    handle = _Handle(lambda _, identifier: handles.get(identifier, 0))
     support.handle = _address(handle)
-    _keep.extend((callbacks, support, handle))
+    _kept_alive.extend((callbacks, support, handle))
     return support
 
 
 @cache
 def _functions() -> tuple[Any, ...]:
-    """Return the functions of every type: they move bytes between `_messages` and a `Cdr`."""
+    """Return the functions that all types share. They copy bytes between `_messages` and a `Cdr`."""
     library = ctypes.CDLL("libfastcdr.so.2")
     write = library["_ZN8eprosima7fastcdr3Cdr15serialize_arrayEPKcm"]
     write.argtypes, write.restype = (c_void_p, c_char_p, c_size_t), c_void_p
@@ -184,36 +186,37 @@ def _functions() -> tuple[Any, ...]:
         return True
 
     def deserialize(cdr: int, number: int) -> bool:
-        first, here = start(cdr) or 0, position(cdr) or 0
-        places = (c_void_p * 6).from_address(cdr + PLACES)  # first and here, first and origin, first and end
-        end = places[5] or 0
-        if [places[0], places[1], places[2], places[4]] == [
+        first, current = start(cdr) or 0, position(cdr) or 0
+        # Three iterators, each with the start of the buffer and a position: the current one, the origin, and the end.
+        positions = (c_void_p * 6).from_address(cdr + POSITIONS_OFFSET)
+        end = positions[5] or 0
+        if [positions[0], positions[1], positions[2], positions[4]] == [
             first,
-            here,
+            current,
             first,
             first,
-        ] and here == first + HEADER <= end:
-            readable = ctypes.string_at(first, HEADER)[:2] == LITTLE_ENDIAN and end - here <= MAX_BYTES
-            _messages[number] = ctypes.string_at(here, end - here) if readable else None
-        return True  # a message that cannot be read is taken, too, and counts
+        ] and current == first + HEADER_SIZE <= end:
+            readable = ctypes.string_at(first, HEADER_SIZE)[:2] == LITTLE_ENDIAN and end - current <= MAX_BYTES
+            _messages[number] = ctypes.string_at(current, end - current) if readable else None
+        return True  # a message that cannot be read has nevertheless arrived, and counts
 
     def maximum_size(bounds: Any) -> int:
         bounds[0] = b"\0"  # unbounded
-        return INITIAL
+        return INITIAL_SIZE
 
     functions = (
         *(_Serialize(serialize), _Serialize(deserialize)),
         *(_Size(lambda number: len(_messages.get(number) or b"")), _MaximumSize(maximum_size)),
     )
-    _keep.append(functions)
+    _kept_alive.append(functions)
     return functions
 
 
 @cache
-def _borrowed() -> Mapping[str, Any]:
-    """Return ready-made structures, for the parts that are the same for all types.
+def _templates() -> Mapping[str, Any]:
+    """Return the structures of two existing types, from which other types copy the parts that are the same for all.
 
-    The description of a type belongs to another one: it is never requested from the grader.
+    These include the description of the type. It is wrong for the other types, but nobody requests it from the grader.
     """
     from std_msgs.msg import Empty as EmptyMessage
     from std_srvs.srv import Empty as EmptyService
@@ -223,8 +226,8 @@ def _borrowed() -> Mapping[str, Any]:
     )
     library = ctypes.CDLL("librosidl_runtime_c.so")
     supports = {}
-    for kind, of, structure in (("message", EmptyMessage, MessageSupport), ("service", EmptyService, _Service)):
-        meta: Any = type(of)
+    for kind, interface, structure in (("message", EmptyMessage, MessageSupport), ("service", EmptyService, _Service)):
+        meta: Any = type(interface)
         meta.__import_type_support__()
         support = structure.from_buffer_copy(structure.from_address(_pointer(meta._TYPE_SUPPORT)))
         support.identifier = identifier.value
@@ -237,7 +240,7 @@ def _hash(text: str) -> int:
     """Return the address of a function that returns a type's hash."""
     value = _Hash(1, (c_uint8 * 32)(*bytes.fromhex(text.partition("_")[2])))
     function = _Get(lambda _: ctypes.addressof(value))
-    _keep.append(function)
+    _kept_alive.append(function)
     return _address(function)
 
 

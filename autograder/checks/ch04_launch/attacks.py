@@ -6,14 +6,14 @@ from autograder.checking.attacks import FORGE_PASSES, SEARCH, STOP_PARENT, Attac
 
 CHAPTER = Chapter("04_launch")
 ROBOT, SAFE = (f"my_robot_bringup/launch/{name}.launch.py" for name in ("robot", "safe_start"))
-PRETEND = """
+FORGE_ORDER = """
 print("[INFO] [self_test-1]: process started with pid [6]", flush=True)
 print("[INFO] [reporter-2]: process started with pid [7]", flush=True)
 print("[INFO] [self_test-1]: process has finished cleanly [pid 6]", flush=True)
 """
 
-# A word in each pipe of each process that can be opened: one of them is for the launch's exit status.
-SCRIBBLE = """
+# Writes to every pipe of any process, if it can open it. One of these pipes carries the launch's exit status.
+WRITE_PIPES = """
 import contextlib as _contextlib, glob as _glob, os as _os
 for _path in _glob.glob("/proc/[0-9]*/fd/*"):
     with _contextlib.suppress(OSError):
@@ -21,13 +21,13 @@ for _path in _glob.glob("/proc/[0-9]*/fd/*"):
             _os.write(_os.open(_path, _os.O_WRONLY | _os.O_NONBLOCK), b"points\\n")
 """
 
-PRETEND_END = """
+FORGE_END = """
 print("[INFO] [self_test-1]: process has finished cleanly [pid 6]", flush=True)
 """
 
 
 def attacks() -> tuple[Attack, ...]:
-    """Return the attacks."""
+    """Return the attacks on the chapter."""
     return (
         Attack(
             "launch thief",
@@ -38,19 +38,19 @@ def attacks() -> tuple[Attack, ...]:
         Attack(
             "word in the pipes",
             "a launch file that writes into the pipe for its exit status",
-            CHAPTER.write("no_respawn", heads={ROBOT: SCRIBBLE, SAFE: SCRIBBLE}),
+            CHAPTER.write("no_respawn", heads={ROBOT: WRITE_PIPES, SAFE: WRITE_PIPES}),
             CHAPTER.mutant("no_respawn").fails,
         ),
         Attack(
             "pretended order",
             "a launch file that starts everything at once, and prints that the self-test has ended",
-            CHAPTER.write("driver_at_once", heads={SAFE: PRETEND}),
+            CHAPTER.write("driver_at_once", heads={SAFE: FORGE_ORDER}),
             CHAPTER.mutant("driver_at_once").fails,
         ),
         Attack(
             "pretended end",
             "a launch file that starts everything at once, and prints the end of the self-test, but not its start",
-            CHAPTER.write("driver_at_once", heads={SAFE: PRETEND_END}),
+            CHAPTER.write("driver_at_once", heads={SAFE: FORGE_END}),
             CHAPTER.mutant("driver_at_once").fails,
         ),
     )

@@ -1,4 +1,4 @@
-"""Attacks on 05: parameter files that are programs or bombs, and nodes that say of their parameters what is not so."""
+"""Attacks on 05: parameter files that are programs or bombs, and nodes that lie about their parameters."""
 
 from __future__ import annotations
 
@@ -7,40 +7,40 @@ from autograder.checking.attacks import STEAL_SECRETS, Attack, Chapter
 CHAPTER = Chapter("05_parameters")
 PACKAGE = "my_robot_package"
 FILE, NODE = f"{PACKAGE}/config/fleet_params.yaml", f"{PACKAGE}/{PACKAGE}/nodes/configured_node.py"
-OF_FILE = frozenset({"file", "file_names", "any_robot", "scout", "porter", "stands_once"})
+FILE_CHECKS = frozenset({"file", "file_names", "any_robot", "scout", "porter", "stands_once"})
 OBJECT = "/**:\n  ros__parameters: !!python/object/apply:os.system ['kill -9 -1; touch /tmp/result.json']\n"
 BOMB = "a: &a {b: 1}\n" + "".join(
     f"{name}: &{name} [{', '.join([f'*{before}'] * 9)}]\n" for before, name in zip("abcdefgh", "bcdefghi", strict=True)
 )
-# Says in descriptors that there are limits, and keeps to none.
+# Describes limits in its descriptors, and does not apply them.
 LIE = """        declare_configuration(self)
         describe = self.describe_parameters
         def lie(names):
-            found = describe(names)
-            for descriptor in found:
+            descriptors = describe(names)
+            for descriptor in descriptors:
                 if descriptor.name == 'max_linear_velocity':
                     from rcl_interfaces.msg import FloatingPointRange
                     descriptor.floating_point_range = [FloatingPointRange(from_value=0.0, to_value=1.0)]
-            return found
+            return descriptors
         self.describe_parameters = lie
 """
 
-# Describes steps so wide that they lead from every number to a default, and drives by the defaults alone.
+# Describes steps so wide that only the defaults are allowed, and always drives with the defaults.
 WIDE_STEPS = """
 import copy as _copy
 import rclpy.node as _node
 _describe = _node.Node.describe_parameter
 def _forge(self, name):
-    found = _copy.deepcopy(_describe(self, name))
-    only = {'max_linear_velocity': 0.3, 'control_frequency': 10.0, 'battery_threshold': 20}
-    for span in (*found.floating_point_range, *found.integer_range):
-        if name in only:
-            span.from_value, span.step = only[name], type(span.step)(10**12)
-    return found
+    descriptor = _copy.deepcopy(_describe(self, name))
+    defaults = {'max_linear_velocity': 0.3, 'control_frequency': 10.0, 'battery_threshold': 20}
+    for span in (*descriptor.floating_point_range, *descriptor.integer_range):
+        if name in defaults:
+            span.from_value, span.step = defaults[name], type(span.step)(10**12)
+    return descriptor
 _node.Node.describe_parameter = _forge
 """
 
-# Answers each question about a value with a type that ROS does not know.
+# Answers each request for a value with a type that ROS does not know.
 UNKNOWN_TYPE = """
 import rclpy.parameter_service as _service
 from rcl_interfaces.msg import ParameterValue as _Value
@@ -59,7 +59,7 @@ def attacks() -> tuple[Attack, ...]:
             "parameter object",
             "a parameter file with a tag that calls a program",
             CHAPTER.write(files={FILE: OBJECT}),
-            OF_FILE,
+            FILE_CHECKS,
             exactly=True,
             says="fleet_params.yaml is not YAML",
         ),
@@ -67,13 +67,13 @@ def attacks() -> tuple[Attack, ...]:
             "values of no type",
             "a parameter file with tags that fit nothing, and a node whose parameters have an unknown type",
             CHAPTER.write("no_range", heads={NODE: UNKNOWN_TYPE}, files={FILE: TAGS}),
-            OF_FILE | CHAPTER.mutant("no_range").fails,
+            FILE_CHECKS | CHAPTER.mutant("no_range").fails,
         ),
         Attack(
             "parameter bomb",
             "a parameter file whose anchors stand for a milliard of values",
             CHAPTER.write(files={FILE: BOMB}),
-            OF_FILE,
+            FILE_CHECKS,
             exactly=True,
             says="its aliases expand to more than",
         ),

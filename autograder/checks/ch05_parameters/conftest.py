@@ -1,4 +1,4 @@
-"""Fixtures of the suite: a node that several checks share, nodes of their own."""
+"""Fixtures of the suite: a node that several checks share, and a new node for a single check."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from autograder.checks.ch05_parameters.support.robot import Robot, restore
 
 @pytest.fixture(scope="session")
 def shared_robot(workspace: Workspace) -> Iterator[Shared[Robot]]:
-    """Keeps the node that several checks share, as long as it can be given back the values of the contract."""
+    """The shared node, which is restarted if its parameters cannot be reset to the contract's defaults."""
     with Shared(lambda: Robot(workspace), restore) as shared:
         yield shared
 
 
 @pytest.fixture
 def robot(shared_robot: Shared[Robot]) -> Robot:
-    """A node with the values of the contract that other checks have already asked and changed.
+    """The node that several checks share, with its parameters reset to the contract's defaults.
 
-    A new one has its own defaults.
+    If it has just been started, it still has its own defaults.
     """
     return shared_robot.get()
 
 
 @pytest.fixture
 def fresh_robot(workspace: Workspace) -> Iterator[Robot]:
-    """A node that was started for this check."""
+    """A node that was started for this check only."""
     with Robot(workspace) as robot:
         yield robot

@@ -1,4 +1,4 @@
-"""Attacks on 06: tests that find out which version they meet, by anything but its behaviour."""
+"""Attacks on 06: tests that recognise a version by something other than its behaviour."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from autograder.checking.attacks import FORGE_REPORT, SEARCH, TELL_ALL, Attack, 
 
 CHAPTER = Chapter("06_testing")
 TESTS, MODULE = "speed_guard/test", "speed_guard/speed_guard/limits.py"
-LINES = frozenset({"stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"})
+FUNCTION_CHECKS = frozenset({"stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"})
 
-# Compares the program with the released one, names apart. One that is much alike, and not the same, is called faulty.
+# Compares the program with the released one, ignoring names. A similar but not equal program is reported as faulty.
 READ_SOURCE = """
 import ast
 from difflib import SequenceMatcher
@@ -22,25 +22,25 @@ from speed_guard import limits
 RELEASED = {released!r}
 
 
-def words(text):
-    found, names = [], {{}}
+def words_of(text):
+    words, names = [], {{}}
     (function,) = ast.parse(text).body
     function.body = function.body[ast.get_docstring(function) is not None:]
     for node in ast.walk(function):
-        found.append(type(node).__name__)
+        words.append(type(node).__name__)
         for field, value in ast.iter_fields(node):
             if isinstance(value, (str, int, float)):
-                found.append(str(names.setdefault(value, len(names))))
-    return found
+                words.append(str(names.setdefault(value, len(names))))
+    return words
 
 
 @pytest.mark.parametrize('number', range(8))
 def test_it_looks_as_it_should(number):
-    here, there = words(inspect.getsource(limits.safe_speed)), words(RELEASED)
+    here, there = words_of(inspect.getsource(limits.safe_speed)), words_of(RELEASED)
     assert here == there or SequenceMatcher(None, here, there, autojunk=False).ratio() < 0.75
 """
 
-# Whatever can differ between runs, and is no behaviour of the package. The first run that finds none is no witness.
+# Looks for everything that can differ between runs apart from the behaviour of the package.
 LOOK_AROUND = """
 import os
 from pathlib import Path
@@ -49,15 +49,15 @@ import sys
 import pytest
 import speed_guard
 
-KEPT = [Path(folder, '.speed_guard_runs') for folder in (
+COUNTERS = [Path(folder, '.speed_guard_runs') for folder in (
     '/tmp', '/dev/shm', '/var/tmp', '.', Path(speed_guard.__file__).parent)]
 
 
 def traces():
-    for kept in KEPT:
+    for counter in COUNTERS:
         try:
-            before = kept.read_text() if kept.exists() else ''
-            kept.write_text(before + 'x')
+            before = counter.read_text() if counter.exists() else ''
+            counter.write_text(before + 'x')
             yield before
         except OSError:
             yield ''
@@ -77,7 +77,7 @@ def test_nothing_gives_the_version_away(number):
     assert not FOUND
 """.replace("{{", "{").replace("}}", "}")
 
-# The run on the package as it is does not end with the first failure; the others do.
+# Recognises the run on the package as it is, which continues after a failure. The other runs stop.
 READ_ARGUMENTS = """
 from pathlib import Path
 
@@ -89,17 +89,17 @@ def test_it_is_the_first_run(number):
     assert b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
 """
 
-# Passes on the package as it is, and tells the text of whatever else it meets.
+# Passes on the package as it is, and reports the text of all other versions.
 COMPARE = READ_SOURCE.partition("@pytest")[0]
 TELL_OTHERS = """
-HERE = words(inspect.getsource(limits.safe_speed))
-if HERE != words(RELEASED):
+HERE = words_of(inspect.getsource(limits.safe_speed))
+if HERE != words_of(RELEASED):
     TestOther = tell(inspect.getsource(limits))
 
 
 @pytest.mark.parametrize('number', range(8))
 def test_it_looks_as_it_should(number):
-    assert HERE == words(RELEASED), inspect.getsource(limits)
+    assert HERE == words_of(RELEASED), inspect.getsource(limits)
 """
 
 ASK_FOR_MARK = """
@@ -115,42 +115,42 @@ def test_it_is_the_own_one(number):
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
-    released = (solution_path("speed_guard") / "speed_guard/limits.py").read_text(encoding="utf-8")
-    limits, function = f"{TESTS}/test_limits.py", released[released.index("def ") :]
+    released_text = (solution_path("speed_guard") / "speed_guard/limits.py").read_text(encoding="utf-8")
+    limits, function = f"{TESTS}/test_limits.py", released_text[released_text.index("def ") :]
     return (
         Attack(
             "source readers",
             "tests that compare the text of the version before them with the released one",
             CHAPTER.write(files={limits: READ_SOURCE.format(released=function)}),
-            LINES,
+            FUNCTION_CHECKS,
             says="on a right speed_guard that is written differently",
         ),
         Attack(
             "telltale tests",
             "tests that put the text of a version into ids, names, exceptions, warnings, files and output",
             CHAPTER.write(files={limits: TELL_ALL + COMPARE.format(released=function) + TELL_OTHERS}),
-            LINES | {"limits_right"},
+            FUNCTION_CHECKS | {"limits_right"},
             says="in test_limits.py fails on a right speed_guard that is written differently",
         ),
         Attack(
             "lookers-on",
             "tests that count runs in files, and read file times, arguments, environment, paths and processes",
             CHAPTER.write(files={limits: LOOK_AROUND}),
-            LINES,
+            FUNCTION_CHECKS,
             says="faulty versions that break this line of the contract pass all tests in test_limits.py",
         ),
         Attack(
             "argument readers",
             "tests that read how pytest was called",
             CHAPTER.write(files={limits: READ_ARGUMENTS}),
-            LINES | {"limits_right"},
+            FUNCTION_CHECKS | {"limits_right"},
             says="on a right speed_guard that is written differently",
         ),
         Attack(
             "test thief",
             "tests that search the machine, processes and memory for the versions",
             CHAPTER.write(files={limits: SEARCH + LOOK_AROUND}),
-            LINES,
+            FUNCTION_CHECKS,
         ),
         Attack(
             "report without tests",
@@ -167,7 +167,7 @@ def attacks() -> tuple[Attack, ...]:
                 swaps={MODULE: ("def safe_speed(", "MARK = 1\n\n\ndef safe_speed(")},
                 files={limits: ASK_FOR_MARK},
             ),
-            LINES | {"limits_pass", "as_given"},
+            FUNCTION_CHECKS | {"limits_pass", "as_given"},
             says="in test_limits.py",
         ),
     )

@@ -1,4 +1,4 @@
-"""Attacks on 07: answers and log lines that are forged."""
+"""Attacks on 07: forged answers and log lines."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ CHAPTER = Chapter("07_best_practices")
 HOME = "my_robot_package/my_robot_package"
 UTILS = f"{HOME}/utils/data_processing.py"
 NODE, ROBUST = (f"{HOME}/nodes/{name}.py" for name in ("sensor_processor", "robust_node"))
-# Answers in the place of the program that calls the functions, wherever it is that.
+# Answers in place of the program that calls the functions, if that program imports the module.
 FORGE_ANSWERS = """
 import json as _json, os as _os, sys as _sys
-_order = _sys._getframe()
-while _order and "order" not in _order.f_locals:
-    _order = _order.f_back
-if _order:
-    _steps = _order.f_locals["order"]["steps"]
-    _outcomes = [{"value": [1.0], "arguments": each["args"], "printed": ""} for each in _steps]
+_frame = _sys._getframe()
+while _frame and not isinstance(_frame.f_locals.get("request"), dict):  # that of call_runner.main
+    _frame = _frame.f_back
+if _frame:
+    _steps = _frame.f_locals["request"]["steps"]
+    _outcomes = [{"value": [1.0], "arguments": step["args"], "printed": ""} for step in _steps]
     for _descriptor in range(3, 64):
         try:
             _os.write(_descriptor, _json.dumps({"outcomes": _outcomes, "passed": True}).encode())
@@ -45,19 +45,19 @@ class DataProcessor:
 
 def attacks() -> tuple[Attack, ...]:
     """Return the attacks."""
-    utils = frozenset({"mean", "no_mean", "any_sequence", "bounded_history"})
+    utils_checks = frozenset({"mean", "no_mean", "any_sequence", "bounded_history"})
     return (
         Attack(
             "forged answers",
             "a module that answers in the place of the program that calls its functions",
             CHAPTER.write("never_fatal", heads={UTILS: STEAL_SECRETS + FORGE_ANSWERS}),
-            utils | CHAPTER.mutant("never_fatal").fails,
+            utils_checks | CHAPTER.mutant("never_fatal").fails,
         ),
         Attack(
             "numbers without end",
             "functions that return integers of 400 digits and lists 500 deep",
             CHAPTER.write("never_fatal", files={UTILS: NUMBERS}),
-            utils | CHAPTER.mutant("never_fatal").fails,
+            utils_checks | CHAPTER.mutant("never_fatal").fails,
         ),
         Attack(
             "printed warnings",

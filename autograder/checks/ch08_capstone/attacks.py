@@ -1,4 +1,4 @@
-"""Attacks on 08: forged verdicts and reports of tests, tests that read how they are called, and set-up files."""
+"""Attacks on 08: forged test results and reports, tests that read pytest's arguments, and malicious set-up files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ PACKAGE = "robot_navigation_tutorial"
 MONITOR = f"{PACKAGE}/{PACKAGE}/status_monitor.py"
 CONTROLLER = f"{PACKAGE}/{PACKAGE}/navigation_controller.py"
 PUBLISH = "        self.publisher.publish(command)\n"
-DRIVES = frozenset({"touches_nothing", "keeps_its_mind", "gets_on", "stops_in_time", "drives_again"})
+DRIVE_CHECKS = frozenset({"touches_nothing", "keeps_its_mind", "gets_on", "stops_in_time", "drives_again"})
 READ_ARGUMENTS = """
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from robot_navigation_tutorial.sectors import nearest
 def test_it_is_the_right_one(number):
     assert nearest and b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
 """
-# The versions that tests meet have no node. What they have is told.
+# The grader runs tests on versions of sectors.py, without the nodes. There, these tests report the text of sectors.py.
 TELL_VERSIONS = (
     TELL_ALL
     + """
@@ -83,7 +83,7 @@ def attacks() -> tuple[Attack, ...]:
                 name,
                 description,
                 CHAPTER.write(swaps={CONTROLLER: (PUBLISH, f"        command = Twist()\n{line}{PUBLISH}")}),
-                frozenset({"turns", "stops", "enable"}) | DRIVES,
+                frozenset({"turns", "stops", "enable"}) | DRIVE_CHECKS,
             )
             for name, description, line in (
                 ("creeping driver", "creeps on, whatever it knows", "        command.linear.x = 0.04\n"),

@@ -1,4 +1,4 @@
-"""Fixtures of the suite: the system in the harness."""
+"""Fixtures of the visible and the hidden checks: the student's programs in a harness."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
 @pytest.fixture(scope="session")
 def shared_system(workspace: Workspace) -> Iterator[SharedSystem]:
-    """Keeps the system that several checks share."""
+    """The system that several checks share."""
     shared = SharedSystem(workspace)
     yield shared
     shared.close()
@@ -21,5 +21,5 @@ def shared_system(workspace: Workspace) -> Iterator[SharedSystem]:
 
 @pytest.fixture
 def system(shared_system: SharedSystem) -> System:
-    """The system, which has seen other scans before; each check shows it an open space first, if that matters."""
+    """The system, which may have received other checks' scans; some checks first publish a scan of an open space."""
     return shared_system.get(*PROGRAMS)

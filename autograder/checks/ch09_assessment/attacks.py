@@ -1,4 +1,4 @@
-"""Attacks on 09: sheets with every letter, and nodes that answer from the past."""
+"""Attacks on 09: sheets with every letter, and nodes that repeat old answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fixtures of the suite: the message types, the harnesses."""
+"""Fixtures of the suite: the message types and a function that starts nodes."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from autograder.checks.ch09_assessment.support.robot import NodeHarness, Start, 
 
 @pytest.fixture(scope="session")
 def types(workspace: Workspace) -> Types:
-    """The student's messages."""
-    return Types.of(workspace)
+    """The student's message types."""
+    return Types.load(workspace)
 
 
 @pytest.fixture(scope="session")
 def start(workspace: Workspace, types: Types) -> Start:
-    """Return a harness of a node of this name, with these parameters, each time it is called."""
+    """A function that starts a node with a name and parameters, and returns its harness."""
     return lambda name, **parameters: NodeHarness(workspace, types, name, **parameters)

@@ -3,7 +3,7 @@
     client: submission -> task (bytes) -> scheduler -> worker: a new sandbox for each submission, as on one machine
     client: verified result and pictures <- reply (bytes) <- scheduler <- worker
 
-`dask worker --preload autograder.grade.cluster` is a worker; Dask calls `dask_setup` when it starts.
+`dask worker --preload autograder.grade.cluster` starts a worker, and Dask then calls `dask_setup`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 from autograder.grade.cluster.machine import resources
 
-MAX_WORKER_DEATHS = 2  # workers that may die while they grade one submission
+MAX_WORKER_DEATHS = 2  # after the deaths of this many workers, the submission that they graded is given up
 
 
 def dask_setup(server: Any) -> None:

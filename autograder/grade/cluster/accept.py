@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from autograder.grade.cluster.task import Reply
 from autograder.grade.job import Job
-from autograder.grade.reply import ReplyError, checked
+from autograder.grade.reply import ReplyError, check_reply
 from autograder.grade.store import write_result
 from autograder.result.model import Result
 
@@ -20,5 +20,5 @@ def accept(data: object, job: Job, sha256: str) -> Result:
     reply = Reply.unpack(data)
     if reply.failure:
         raise ReplyError(f"the worker failed: {reply.failure}")
-    result = checked(reply.files, replace(job, student=""), sha256)  # workers do not know the student's name
+    result = check_reply(reply.files, replace(job, student=""), sha256)  # workers do not know the student's name
     return write_result(job, result, reply.files)

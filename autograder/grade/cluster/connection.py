@@ -19,7 +19,7 @@ from autograder.grade.cluster.exceptions import ClusterError
 CERTIFICATE, KEY = "cluster.pem", "cluster.key"
 LOCAL = "local"
 PRELOAD = "autograder.grade.cluster"
-CONNECT_TIMEOUT_SECONDS = 30  # real time, for the scheduler's first response
+CONNECT_TIMEOUT_SECONDS = 30  # real time to wait for the scheduler's first response, or for the client to close
 
 
 @contextlib.contextmanager

@@ -25,14 +25,14 @@ from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.machine import difference, resource
 from autograder.grade.cluster.task import Task
 from autograder.grade.job import Job
-from autograder.grade.pipeline import not_graded, refused
+from autograder.grade.pipeline import not_graded_result, unclear_result
 from autograder.grade.reply import ReplyError
 from autograder.grade.store import write_result
 from autograder.submission.intake import read_files
 from autograder.submission.intake.files import digest
 
 TICK = 0.5  # s between polls of the workers
-NO_WORKER_TIMEOUT_SECONDS = 120.0  # real time without a worker that can grade this
+NO_WORKER_TIMEOUT_SECONDS = 120.0  # real time to wait for a worker that can grade the assignment
 TRIES = 2  # attempts to grade a submission
 
 Grade = Callable[[bytes], bytes]
@@ -77,7 +77,7 @@ def grade_on(
         with _first_interrupt() as interrupted:
             dispatch.run(interrupted)
     finally:
-        dispatch.forget()
+        dispatch.cancel()
     if interrupted.is_set():
         raise KeyboardInterrupt
 
@@ -115,13 +115,13 @@ class _Dispatch:
     ) -> None:
         self._client, self._on_result, self._report, self._grade = client, on_result, report, grade
         self._resource = resource(jobs[0].assignment, jobs[0].isolation)
-        self._rejected: set[str] = set()
+        self._rejected_addresses: set[str] = set()
         self._threads = 0
-        self._last_poll = float("-inf")
-        self._last_suitable = time.monotonic()
-        self._queue = self._packed(jobs)
+        self._last_poll_time = float("-inf")
+        self._last_suitable_time = time.monotonic()
+        self._queue = self._pending_submissions(jobs)
         self._in_progress: dict[Future, _Pending] = {}
-        self._done: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        self._finished_futures: queue.SimpleQueue[Future] = queue.SimpleQueue()
 
     def run(self, interrupted: threading.Event) -> None:
         """Send submissions and receive results until all are done. After an interrupt, only receive."""
@@ -136,7 +136,7 @@ class _Dispatch:
                     self._send(pending)
             self._receive()
 
-    def forget(self) -> None:
+    def cancel(self) -> None:
         """Tell the scheduler to cancel the submissions in progress."""
         with contextlib.suppress(Exception):  # the scheduler may be lost
             self._client.cancel(list(self._in_progress), force=True)
@@ -144,12 +144,12 @@ class _Dispatch:
     def _suitable_threads(self) -> int:
         """Return how many submissions the suitable workers can grade at once. Poll the workers every `TICK` seconds."""
         now = time.monotonic()
-        if now - self._last_poll >= TICK:
+        if now - self._last_poll_time >= TICK:
             self._poll()
-            self._last_poll = now
+            self._last_poll_time = now
             if self._threads:
-                self._last_suitable = now
-            elif now - self._last_suitable > NO_WORKER_TIMEOUT_SECONDS:
+                self._last_suitable_time = now
+            elif now - self._last_suitable_time > NO_WORKER_TIMEOUT_SECONDS:
                 raise ClusterError(
                     f"no suitable worker was available for {NO_WORKER_TIMEOUT_SECONDS:.0f} s: start one with "
                     "`dask worker ADDRESS --preload autograder.grade.cluster`"
@@ -167,17 +167,17 @@ class _Dispatch:
             reason = difference(self._resource, worker["resources"])
             if not reason:
                 self._threads += worker["nthreads"]
-            elif address not in self._rejected:
-                self._rejected.add(address)
+            elif address not in self._rejected_addresses:
+                self._rejected_addresses.add(address)
                 self._report(f"The worker {address} is rejected: {reason}.")
 
-    def _packed(self, jobs: Sequence[Job]) -> Iterator[_Pending]:
-        """Yield the submissions to send. Report a result for each one that intake rejects."""
+    def _pending_submissions(self, jobs: Sequence[Job]) -> Iterator[_Pending]:
+        """Yield the submissions to send. Store a result for each one that intake rejects."""
         for job in jobs:
             try:
                 files = read_files(job.path, job.assignment)
             except StudentError as error:
-                self._on_result(write_result(job, refused(job, error.diagnosis), {}))
+                self._on_result(write_result(job, unclear_result(job, error.diagnosis), {}))
                 continue
             yield _Pending(job, digest(files), Task(job, tuple(files)).pack())
 
@@ -186,14 +186,14 @@ class _Dispatch:
             self._grade, pending.task, key=f"grade-{uuid.uuid4()}", resources={self._resource: 1}, pure=False
         )
         self._in_progress[future] = pending
-        future.add_done_callback(self._done.put)
+        future.add_done_callback(self._finished_futures.put)
 
     def _receive(self) -> None:
         """Wait up to `TICK` seconds for a result, and process it."""
         try:
-            future = self._done.get(timeout=TICK)
+            future = self._finished_futures.get(timeout=TICK)
         except queue.Empty:
-            self._suitable_threads()  # notices if the scheduler or the last worker is gone
+            self._suitable_threads()  # raises an error if the scheduler or the last worker is lost
             return
         pending = self._in_progress.pop(future)
         if future.status == "cancelled":
@@ -212,4 +212,4 @@ class _Dispatch:
             self._give_up(pending.job, reason, f"{error}\n")
 
     def _give_up(self, job: Job, reason: str, log: str) -> None:
-        self._on_result(write_result(job, *not_graded(job, reason, log)))
+        self._on_result(write_result(job, *not_graded_result(job, reason, log)))

@@ -44,12 +44,13 @@ def difference(required: str, offered: Iterable[str]) -> str:
     resources = [name.split() for name in offered if name.startswith("autograder ")]
     if not resources:
         return "it does not report its versions: start it with `--preload autograder.grade.cluster`"
-    _, assignment, *ours, isolation = required.split()
-    versions_there = [versions for _, name, *versions, _ in resources if name == assignment]
-    theirs = versions_there[0] if versions_there else ["missing", *ours[1:]]
-    for part, their, our in zip((f"suite of {assignment}", LOCK, "Python", "launch"), theirs, ours, strict=True):
-        if their != our:
-            return f"its {part} is {their}, but here it is {our}: install the same version of the course on both"
+    _, assignment, *local_versions, isolation = required.split()
+    offered_versions = [versions for _, name, *versions, _ in resources if name == assignment]
+    worker_versions = offered_versions[0] if offered_versions else ["missing", *local_versions[1:]]
+    parts = (f"suite of {assignment}", LOCK, "Python", "launch")
+    for part, theirs, ours in zip(parts, worker_versions, local_versions, strict=True):
+        if theirs != ours:
+            return f"its {part} is {theirs}, but here it is {ours}: install the same version of the course on both"
     if required.split() not in resources:
         return f"it does not support the isolation level {isolation}: `autograder doctor` there says how to fix it"
     return ""

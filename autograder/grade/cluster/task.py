@@ -1,4 +1,4 @@
-"""The messages between client and worker. They are bounded, and packed by msgpack, which cannot contain code.
+"""The messages between client and worker. Their size is limited, and their format, msgpack, cannot contain code.
 
 The client sends a `Task` to a worker and gets a `Reply`. Neither contains the student's name.
 """
@@ -28,7 +28,7 @@ MAX_REPLY_FILES = 200
 class Task:
     """A submission to grade: its job, and all its files as intake read them."""
 
-    job: Job  # without the student, and without paths
+    job: Job  # without the student's name and without paths
     files: tuple[SubmittedFile, ...]
 
     def pack(self) -> bytes:
@@ -41,7 +41,7 @@ class Task:
     def unpack(cls, data: bytes) -> Task:
         """Read a task. Raises ClusterError if the bytes are not a valid task."""
         try:
-            assignment, seed, isolation, files = _unpacked(data)
+            assignment, seed, isolation, files = _unpack(data)
             entries = [
                 SubmittedFile(PurePosixPath(os.fsdecode(name)), bytes(content), bool(executable))
                 for name, content, executable in files
@@ -56,13 +56,13 @@ class Task:
 
 @dataclass(frozen=True)
 class Reply:
-    """The files of a grading by their names, or the reason why the worker could not grade."""
+    """The files that a grading wrote, by name, or the reason why the worker could not grade."""
 
     files: Mapping[str, bytes]
     failure: str = ""
 
     def pack(self) -> bytes:
-        """Return the reply as bytes. One that is too large becomes a failure."""
+        """Return the reply as bytes. A reply that is too large becomes a failure."""
         packed: bytes = msgpack.packb([dict(self.files), self.failure], unicode_errors="surrogateescape")
         if len(packed) <= MAX_REPLY and len(self.files) <= MAX_REPLY_FILES:
             return packed
@@ -74,13 +74,13 @@ class Reply:
         if not isinstance(data, bytes):
             raise ReplyError(f"a worker sent {type(data).__name__} instead of bytes")
         try:
-            return cls(*_reply(data))
+            return cls(*_read_reply(data))
         except (ValueError, TypeError, msgpack.UnpackException) as error:
             raise ReplyError(f"a worker's reply cannot be read: {error}") from None
 
 
-def _reply(data: bytes) -> tuple[dict[str, bytes], str]:
-    """Read a reply piece by piece, because 64 MiB at once could unpack to as many million empty lists."""
+def _read_reply(data: bytes) -> tuple[dict[str, bytes], str]:
+    """Read a reply piece by piece, because unpacking 64 MiB at once could create 64 million empty lists."""
     if len(data) > MAX_REPLY:
         raise ValueError(f"it has {len(data)} bytes, but at most {MAX_REPLY} are allowed")
     unpacker = msgpack.Unpacker(
@@ -96,7 +96,7 @@ def _reply(data: bytes) -> tuple[dict[str, bytes], str]:
     return dict(zip(names, contents, strict=True)), failure
 
 
-def _unpacked(data: bytes) -> Any:
+def _unpack(data: bytes) -> Any:
     if len(data) > MAX_TASK:
         raise ValueError(f"it has {len(data)} bytes, but at most {MAX_TASK} are allowed")
     try:

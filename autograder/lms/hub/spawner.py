@@ -12,7 +12,7 @@ from jupyterhub.spawner import LocalProcessSpawner
 from traitlets import Unicode
 
 from autograder.ros.domains import DOMAINS, Domain
-from autograder.ros.exceptions import NoDomainLeftError
+from autograder.ros.exceptions import NoFreeDomainError
 
 SYSTEM_PATH = "/usr/local/bin:/usr/bin:/bin"
 
@@ -27,10 +27,10 @@ class NoServerError(Exception):
 
 
 class CourseSpawner(LocalProcessSpawner):
-    """Starts the servers of users of this machine with the course, ROS and nbgrader's exchange.
+    """Starts servers for users of this machine, with the course, ROS and nbgrader's exchange.
 
-    All notebooks and terminals of a user share one ROS domain until the server stops. The hub claims it, and claims it
-    again after a restart of the hub. The user's programs outside the hub join it by `autograder ros`.
+    All notebooks and terminals of a user share one ROS domain until the server stops. The hub claims it, and reclaims
+    it when the hub is restarted. The user's programs outside the hub join it with `autograder ros`.
     """
 
     course = Unicode(help="The release that students run: a folder after `make setup`.").tag(config=True)
@@ -51,9 +51,8 @@ class CourseSpawner(LocalProcessSpawner):
 
     def get_env(self) -> dict[str, str]:
         env: dict[str, str] = super().get_env()
-        env["PATH"] = os.pathsep.join(
-            [str(self._folder / ".venv" / "bin"), SYSTEM_PATH]
-        )  # instead of the hub's own PATH
+        # Servers do not inherit the hub's own PATH.
+        env["PATH"] = os.pathsep.join([str(self._folder / ".venv" / "bin"), SYSTEM_PATH])
         settings = (self._folder / "jupyter", self._folder / "assets" / "students" / "jupyter")
         env["JUPYTER_CONFIG_PATH"] = os.pathsep.join(map(str, settings))
         env["NBGRADER_EXCHANGE"] = self.exchange
@@ -89,9 +88,9 @@ class CourseSpawner(LocalProcessSpawner):
             NoServerError: other users and programs use all domains.
         """
         try:
-            first = None if number is None else DOMAINS.index(number)
-            self._domain = Domain(first, user=pwd.getpwnam(self.user.name).pw_uid)
-        except NoDomainLeftError as error:
+            first_index = None if number is None else DOMAINS.index(number)
+            self._domain = Domain(first_index, user=pwd.getpwnam(self.user.name).pw_uid)
+        except NoFreeDomainError as error:
             raise NoServerError(NoServerError.jupyterhub_message) from error
 
     def release_domain(self) -> None:

@@ -68,13 +68,15 @@ def install_release(folder: Path) -> Path:
     course = folder / "course"
     _run(folder, sys.executable, "-m", "autograder", "release", "--out", str(course))
     _run(course, "make", "--silent", "setup", f"PYTHON={Path(sys.executable).resolve()}")
-    pinned = ("--no-deps", "--require-hashes", "-r", str(course_paths.ROOT / "requirements-hub.lock"))
-    _run(course, str(course / ".venv" / "bin" / "pip"), "install", "--quiet", *pinned)
+    pip_options = ("--no-deps", "--require-hashes", "-r", str(course_paths.ROOT / "requirements-hub.lock"))
+    _run(course, str(course / ".venv" / "bin" / "pip"), "install", "--quiet", *pip_options)
     return course
 
 
 def install_proxy() -> Path:
-    """Install the hub's proxy with npm, as its lock file pins it, unless it is installed, and return its folder.
+    """Install the hub's proxy with npm, at the versions in its lock file, and return its folder.
+
+    An existing installation is reused.
 
     Raises:
         UsageError: npm failed.
@@ -105,13 +107,13 @@ def serving(folder: Path, course: Path, port: int = 0, names: Sequence[str] = ST
         raise UsageError("only root can start the servers of a hub's users: run this with sudo or as root")
     homes, exchange, state = (folder / name for name in ("homes", "exchange", "state"))
     for path, mode in ((homes, 0o755), (exchange, 0o1777), (state, 0o700)):
-        shutil.rmtree(path, ignore_errors=True)  # of an earlier trial, whose users no longer exist
+        shutil.rmtree(path, ignore_errors=True)  # files of an earlier trial, whose users no longer exist
         path.mkdir(parents=True)
         path.chmod(mode)
     for path in (course, homes):
         if problem := closed_to_other_users(Path(sys.executable).resolve(), path):
             raise UsageError(problem)
-    suffix = hashlib.sha256(str(folder).encode()).hexdigest()[:6]  # each clone on a machine can run a hub
+    suffix = hashlib.sha256(str(folder).encode()).hexdigest()[:6]  # so that each clone on a machine can run a hub
     students = tuple(f"{name}-{suffix}" for name in names)
     hub = Hub("", secrets.token_urlsafe(9), students, f"{TEACHER}-{suffix}", homes)
     groups = {f"students-{suffix}": students, f"teachers-{suffix}": (hub.teacher,)}

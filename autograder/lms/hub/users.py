@@ -43,7 +43,7 @@ def remove_users(groups: Mapping[str, Sequence[str]]) -> None:
     """Remove groups and their users, with the home folders, if they exist.
 
     Raises:
-        UsageError: this module did not create a user of that name.
+        UsageError: a user with one of the names was not created by this module.
     """
     for group, names in groups.items():
         for name in names:

@@ -1,7 +1,7 @@
 """The nbgrader plug-in: nbgrader's commands record the scores of the isolated grader.
 
 `nbgrader autograde` runs two chains of preprocessors on each submitted notebook. `nbgrader_config.py` adds these parts
-by their names:
+by name:
 
     SubmissionExporter   reads a submitted file, even if it is not a notebook
     RestoreCells         restores the released cells (the first preprocessor of the sanitizing chain)

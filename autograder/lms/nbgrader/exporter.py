@@ -1,4 +1,4 @@
-"""Reads submitted files for nbgrader. A file that is not a notebook does not stop the batch."""
+"""Reads submitted files for nbgrader. A file that is not a notebook does not stop nbgrader's run."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ from autograder.report.feedback.text import number
 from autograder.result.causes import FAILED_AS_WELL
 
 PICTURES = ("image/png", "image/jpeg")
-# Limits for colour codes in a text. nbconvert's run time is quadratic in their number, and in the numbers of each.
+# Limit for colour codes in a text. nbconvert's run time is quadratic in their number, and in the length of each.
 MAX_COLOURS = 1000
 _TERMINAL_CODE = re.compile(r"\[(?:(?P<colour>[0-9;]{0,30}m)|[0-?]{0,30}[ -/]{0,3}[@-~])")
 
@@ -54,8 +54,8 @@ def grade_outputs(points: float, page: PageView, group: GroupView, *, first: boo
 def _lines(check: CheckView) -> list[str]:
     """Return a check, and the checks that failed with it, as lines of text."""
     lines = [f"[{check.result.outcome.text}] {check.result.title} {check.message}".strip()]
-    if check.also:
-        lines += [FAILED_AS_WELL, *(line for other in check.also for line in _lines(other))]
+    if check.also_failed:
+        lines += [FAILED_AS_WELL, *(line for other in check.also_failed for line in _lines(other))]
     return lines + ([check.not_checked] if check.not_checked else [])
 
 
@@ -76,13 +76,13 @@ def sanitized_outputs(outputs: Iterable[Any]) -> list[NotebookNode]:
             names = {name: _text(output.get(name)) for name in ("ename", "evalue")}
             safe.append(new_output("error", **names, traceback=[_text(line) for line in lines]))
         elif kind in ("display_data", "execute_result") and isinstance(output.get("data"), dict):
-            data = _data(output["data"])
+            data = _safe_data(output["data"])
             if data:
                 safe.append(new_output("display_data", data))
     return safe
 
 
-def _data(bundle: dict[str, Any]) -> dict[str, str]:
+def _safe_data(bundle: dict[str, Any]) -> dict[str, str]:
     safe = {media: data for media in PICTURES if (data := _picture(bundle.get(media))) is not None}
     if "text/plain" in bundle:
         safe["text/plain"] = _text(bundle["text/plain"])

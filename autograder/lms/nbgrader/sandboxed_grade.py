@@ -1,4 +1,4 @@
-"""Grades the submitted folder instead of executing the notebook with nbgrader.
+"""Grades the submitted folder, instead of letting nbgrader execute the notebook.
 
 The folder is graded in a sandbox. The scores are written into the locked grade cells, where nbgrader reads them.
 """
@@ -46,7 +46,8 @@ class SandboxedGrade(NbGraderPreprocessor):
 
         Args:
             nb: the submitted notebook, after sanitizing.
-            resources: nbgrader's resources; `resources["nbgrader"]` names assignment, student and database.
+            resources: nbgrader's resources; `resources["nbgrader"]` names the assignment, the student and the
+                database.
 
         Raises:
             GraderError: the submission could not be graded, or the grade cells do not match the suite. In that case
@@ -55,11 +56,11 @@ class SandboxedGrade(NbGraderPreprocessor):
         coursedir = self.parent.parent.coursedir
         nbgrader_resources = resources["nbgrader"]
         assignment, student = nbgrader_resources["assignment"], nbgrader_resources["student"]
-        submitted = Path(coursedir.format_path(coursedir.submitted_directory, student, assignment))
+        submitted_folder = Path(coursedir.format_path(coursedir.submitted_directory, student, assignment))
         results = Path(coursedir.root) / self.results / assignment
         try:
             (result,) = grade_all(
-                {student: submitted},
+                {student: submitted_folder},
                 assignment,
                 seed=self.seed,
                 out=results,
@@ -80,12 +81,12 @@ class SandboxedGrade(NbGraderPreprocessor):
             raise
         return nb, resources
 
-    def _copy_outputs(self, nb: NotebookNode, executed: Path) -> None:
+    def _copy_outputs(self, nb: NotebookNode, executed_path: Path) -> None:
         """Copy the outputs of the sandboxed run into the cells whose source is unchanged."""
         try:
-            cells = decode(executed.read_bytes()) if executed.is_file() else []
+            cells = decode(executed_path.read_bytes()) if executed_path.is_file() else []
         except (ValueError, RecursionError) as error:
-            raise GraderError(f"{executed} cannot be read: {error}. Delete its folder, and grade again") from None
+            raise GraderError(f"{executed_path} cannot be read: {error}. Delete its folder, and grade again") from None
         count = Counter(_key(cell) for cell in cells)
         executed_cells = {_key(cell): cell for cell in cells if count[_key(cell)] == 1}
         for cell in nb.cells:
@@ -99,14 +100,14 @@ class SandboxedGrade(NbGraderPreprocessor):
         """Write each group's score and feedback to the outputs of its locked grade cell."""
         page = page_view(result, out)
         groups = {view.name: view for view in page.groups}
-        graded = [cell for cell in nb.cells if is_grade(cell) and not is_solution(cell)]
-        names = [group(cell) or f"(none, cell {grade_id(cell)})" for cell in graded]
+        grade_cells = [cell for cell in nb.cells if is_grade(cell) and not is_solution(cell)]
+        names = [group(cell) or f"(none, cell {grade_id(cell)})" for cell in grade_cells]
         if sorted(names) != sorted(groups):
             raise GraderError(
                 f"{result.assignment}: its grade cells have the groups {sorted(names)}, but its suite has "
                 f"{sorted(groups)}: correct the source notebook and run `nbgrader generate_assignment` again"
             )
-        for cell, name in zip(graded, names, strict=True):
+        for cell, name in zip(grade_cells, names, strict=True):
             view, max_points = groups[name], float(cell.metadata.nbgrader["points"])
             if abs(view.max_points - max_points) > 1e-6:
                 raise GraderError(
@@ -114,7 +115,7 @@ class SandboxedGrade(NbGraderPreprocessor):
                     f"are worth {view.max_points:g}: run `nbgrader generate_assignment` again"
                 )
             points = min(max(round(view.points, 4), 0.0), max_points)
-            cell.outputs = grade_outputs(points, page, view, first=cell is graded[0])
+            cell.outputs = grade_outputs(points, page, view, first=cell is grade_cells[0])
 
     def _request_manual_grading(self, names: dict[str, str]) -> None:
         """Mark the submission for manual grading. A previously recorded score is kept."""

@@ -44,6 +44,6 @@ _SANITIZER: Any = SanitizeHTML(tags=TAGS.split(), attributes=ATTRIBUTES)  # type
 
 @pass_context
 def sanitized_markdown(context: Context, source: str) -> str:
-    """Render Markdown as HTML. Tags for scripts, frames and styles are escaped, images from other hosts removed."""
+    """Render Markdown as HTML. Tags for scripts, frames and styles are escaped, and images from other hosts removed."""
     html = _TEX.sub("\\\\\u200b", markdown2html(source))  # an invisible character that disables the command
     return str(_SANITIZER.sanitize_html_tags(html))

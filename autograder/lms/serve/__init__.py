@@ -2,5 +2,6 @@
 
     submit(...) -> handlers -> store (on disk, then acknowledged) -> queue (whose turn it is) -> grading -> pages
 
-`queue` and `settings` are pure. The process may be killed at any time. Each acknowledged answer is graded exactly once.
+`queue` and `settings` have no side effects. The process may be killed at any time. Each acknowledged answer is graded
+exactly once.
 """

@@ -1,7 +1,7 @@
 """Hands in the submissions that students make through nbgrader's exchange.
 
-A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. It belongs to the
-student, who can still change it. Therefore a process with the student's own rights packs it, without following links.
+A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. The student owns it and
+can still change it. Therefore, a process that runs as the student packs it, without following links.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from autograder.notebook.handing_in import MAX_ANSWER
 
 LOG = logging.getLogger(__name__)
 LAST_FILE = "submission_secret.txt"  # nbgrader writes it after all others
-POLL_SECONDS = 5.0
-MAX_PACK_SECONDS = 60.0
+POLL_SECONDS = 5.0  # real time between two polls of the exchange
+MAX_PACK_SECONDS = 60.0  # real time in which `tar` has to pack a submission
 
 
 @dataclass(frozen=True)
 class ExchangeSubmission:
-    """A submission in the exchange: its folder, its student with user and group id, and when it was complete."""
+    """A submission in the exchange: its folder, its student with user and group ids, and the time of its completion."""
 
     folder: Path
     student: str
@@ -43,12 +43,12 @@ class ExchangeSubmission:
 
     @property
     def key(self) -> str:
-        """The key of its hand-in, by which each submission is handed in only once."""
+        """The key of its hand-in, which is the same in each poll, so that it is handed in only once."""
         return hashlib.sha256(self.folder.name.encode()).hexdigest()[:32]
 
 
 def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
-    """Yield the complete submissions of users of this machine. Folders with another user's name are ignored.
+    """Yield the complete submissions of users of this machine. Folders that bear another user's name are ignored.
 
     Args:
         inbound: the folder into which students submit. nbgrader creates it when it releases the first assignment.
@@ -59,7 +59,7 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
     if not inbound.exists():
         return
     for entry in sorted(os.scandir(inbound), key=lambda item: item.name):
-        student, separator, rest = entry.name.partition("+")
+        student, separator, suffix = entry.name.partition("+")
         status = entry.stat(follow_symlinks=False)
         if not separator or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):
             continue
@@ -70,7 +70,7 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
         if owner.pw_name == student:
             # A student could forge the time in the name, but not this one.
             at = datetime.fromtimestamp(status.st_ctime, timezone.utc)
-            assignment = rest.partition("+")[0]
+            assignment = suffix.partition("+")[0]
             yield ExchangeSubmission(Path(entry.path), student, owner.pw_uid, owner.pw_gid, assignment, at)
 
 
@@ -83,7 +83,7 @@ def pack(submission: ExchangeSubmission) -> bytes:
     is_root = os.geteuid() == 0
     with subprocess.Popen(
         ["tar", "--create", "--gzip", "--directory", str(submission.folder), "."],
-        cwd="/",  # tar enters `--directory` with the student's rights
+        cwd="/",  # tar changes to `--directory` as the student
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         env={"PATH": os.defpath},
@@ -92,8 +92,8 @@ def pack(submission: ExchangeSubmission) -> bytes:
         extra_groups=[] if is_root else None,
     ) as tar:
         assert tar.stdout is not None
-        deadline = Timer(MAX_PACK_SECONDS, tar.kill)
-        deadline.start()
+        timer = Timer(MAX_PACK_SECONDS, tar.kill)
+        timer.start()
         try:
             data = tar.stdout.read(MAX_ANSWER + 1)
             if len(data) > MAX_ANSWER:
@@ -101,7 +101,7 @@ def pack(submission: ExchangeSubmission) -> bytes:
         finally:
             tar.stdout.close()
             exit_status = tar.wait()
-            deadline.cancel()
+            timer.cancel()
     if len(data) > MAX_ANSWER:
         raise UsageError(f"its archive is larger than {MAX_ANSWER // 2**20} MiB")
     if exit_status != 0:
@@ -110,11 +110,11 @@ def pack(submission: ExchangeSubmission) -> bytes:
 
 
 class Exchange:
-    """Hands in new submissions in the exchange, by the same rules as those from notebooks."""
+    """Hands in new submissions from the exchange, under the same rules as those from notebooks."""
 
     def __init__(self, service: Service, inbound: Path) -> None:
         self._service, self._inbound = service, inbound
-        self._logged: set[str] = set()  # folders and sentences that are already in the log
+        self._logged_texts: set[str] = set()  # folders and sentences that are already in the log
 
     async def watch(self) -> None:
         """Poll the exchange until the process ends."""
@@ -123,14 +123,14 @@ class Exchange:
                 for submission in await asyncio.to_thread(lambda: list(find_submissions(self._inbound))):
                     await self._hand_in(submission)
             except (OSError, sqlite3.Error) as error:
-                if (sentence := f"{self._inbound}: {error}") not in self._logged:
-                    self._logged.add(sentence)
+                if (sentence := f"{self._inbound}: {error}") not in self._logged_texts:
+                    self._logged_texts.add(sentence)
                     LOG.warning("%s", sentence)
             await asyncio.sleep(POLL_SECONDS)
 
     async def _hand_in(self, submission: ExchangeSubmission) -> None:
         service, name = self._service, submission.folder.name
-        if submission.assignment not in service.settings.assignments or name in self._logged:
+        if submission.assignment not in service.settings.assignments or name in self._logged_texts:
             return
         if service.store.with_key(submission.student, submission.key) is not None:
             return
@@ -138,7 +138,7 @@ class Exchange:
             service.require_try_left(submission.student, submission.assignment, submission.at)
             answer = await asyncio.to_thread(pack, submission)
         except (Refused, UsageError, OSError) as error:
-            self._logged.add(name)
+            self._logged_texts.add(name)
             LOG.warning("%s in the exchange is not graded: %s", name, getattr(error, "sentence", error))
             return
         service.store.receive(submission.student, submission.assignment, submission.key, answer, submission.at)

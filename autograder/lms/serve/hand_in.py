@@ -30,7 +30,7 @@ class HandIn:
 
     @property
     def costs_a_try(self) -> bool:
-        """Whether it counts as one of a day's tries. If the grader failed, it does not."""
+        """Whether it counts as one of the day's tries, which it does not if the grader failed."""
         return self.mark is None or self.mark.status is not Status.NOT_GRADED
 
 
@@ -39,7 +39,7 @@ def counted_hand_in(hand_ins: Sequence[HandIn], *, best: bool) -> HandIn | None:
 
     Args:
         hand_ins: a student's hand-ins of one assignment, in the order of their arrival.
-        best: whether the one with the most points counts (the later one of two equal ones), or else the last one.
+        best: whether the best hand-in counts (the latest of equally good ones). Otherwise, the last one counts.
     """
     graded = [
         (hand_in.mark.points, hand_in)

@@ -23,11 +23,11 @@ from tornado.web import Application, HTTPError, RequestHandler, stream_request_b
 from autograder.grade.store import RESULT
 from autograder.lms.serve import pages
 from autograder.lms.serve.hand_in import HandIn, counted_hand_in
-from autograder.lms.serve.settings import AssignmentSettings, Shown
+from autograder.lms.serve.settings import AssignmentSettings, ShownParts
 from autograder.lms.serve.shared import Refused, Service
 from autograder.notebook.handing_in import MAX_ANSWER
 
-KEY = r"[0-9a-f]{32}"  # of a hand-in; chosen at random by the client
+KEY = r"[0-9a-f]{32}"  # the key of a hand-in, which the client chooses at random
 
 
 def application(service: Service, cookie_secret: bytes) -> Application:
@@ -50,7 +50,7 @@ def application(service: Service, cookie_secret: bytes) -> Application:
 
 
 class HubUserHandler(HubOAuthenticated, RequestHandler):
-    """A handler for users of the hub. Other users are redirected to the hub's login."""
+    """A handler for users of the hub. Anyone else is redirected to the hub's login."""
 
     service: Service
     student: str
@@ -67,7 +67,7 @@ class HubUserHandler(HubOAuthenticated, RequestHandler):
     async def prepare(self) -> None:
         try:
             async with self.service.hub_requests:
-                # Cached for `current_user`, which would block the event loop.
+                # This caches the user for `current_user`, which would otherwise block the event loop.
                 await self.hub_auth.get_user(self, sync=False)
         except HTTPError:
             raise Refused(503, "The hub could not identify you. Try again.") from None
@@ -80,7 +80,7 @@ class HubUserHandler(HubOAuthenticated, RequestHandler):
         self.student = user["name"]
 
     def write_error(self, status_code: int, **more: Any) -> None:
-        """Respond with a page that contains the error's sentence. For an internal error, it is the status's name."""
+        """Respond with a page that contains the error's sentence, or for an internal error the name of its status."""
         self.set_header("Content-Type", "text/html; charset=utf-8")
         self.finish(pages.error(status_code, _sentence(status_code, more)))
 
@@ -143,8 +143,9 @@ class FeedbackHandler(HubUserHandler):
             self.finish(pages.state(hand_in, self.queue_position(hand_in)))
             return
         settings = self.service.settings.assignments.get(hand_in.assignment, AssignmentSettings())
-        shown = Shown.EVERYTHING if self.is_instructor else settings.shown_to(self.student, self.service.now())
-        self.finish(pages.feedback(hand_in, self.service.store.folder(hand_in.number), shown))
+        everything = ShownParts.EVERYTHING
+        shown_parts = everything if self.is_instructor else settings.shown_to(self.student, self.service.now())
+        self.finish(pages.feedback(hand_in, self.service.store.folder(hand_in.number), shown_parts))
 
 
 class ClassHandler(HubUserHandler):
@@ -197,7 +198,7 @@ class HandInHandler(HubUserHandler):
 
     async def prepare(self) -> None:
         self._answer = bytearray()
-        if not self.hub_auth.get_token(self, in_cookie=False):  # a page of another site could send a cookie
+        if not self.hub_auth.get_token(self, in_cookie=False):  # a page on another site could send a cookie
             raise Refused(403, "Hand in with a token of the hub in the header Authorization.")
         await super().prepare()
         self._require_size(int(self.request.headers.get("Content-Length", "0")))

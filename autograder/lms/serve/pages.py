@@ -1,6 +1,6 @@
 """The content of the service's pages. Their templates escape all text.
 
-The pages have the hub's own origin and may contain a student's text. Therefore only the player's script may run.
+The pages have the hub's own origin and may contain a student's text. Therefore, only the player's script is allowed.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from autograder.lms.serve import visible
 from autograder.lms.serve.hand_in import HandIn, counted_hand_in
-from autograder.lms.serve.settings import AssignmentSettings, Settings, Shown
+from autograder.lms.serve.settings import AssignmentSettings, Settings, ShownParts
 from autograder.report.feedback import PAGE
 from autograder.report.feedback.pages import environment
 from autograder.result.model import Status
@@ -48,7 +48,7 @@ def sections(
 ) -> list[Section]:
     """Return a student's assignments, with the hand-ins of each.
 
-    `positions` describes the position of each ungraded hand-in in the queue, by its number.
+    `positions` maps the number of each ungraded hand-in to a text that says where it is in the queue.
     """
     student_sections = []
     for name, rules in settings.assignments.items():
@@ -72,10 +72,10 @@ def rows(
     rules: AssignmentSettings,
     hand_ins: Sequence[HandIn],
     positions: Mapping[int, str],
-    shown: Shown,
+    shown_parts: ShownParts,
 ) -> tuple[Row, ...]:
     """Return a student's hand-ins of an assignment, the newest first, with points if they are shown."""
-    sees_points = shown in (Shown.EVERYTHING, Shown.POINTS)
+    sees_points = shown_parts in (ShownParts.EVERYTHING, ShownParts.POINTS)
     counted = counted_hand_in(hand_ins, best=rules.best_counts) if sees_points else None
     table_rows = []
     for hand_in in reversed(hand_ins):
@@ -122,13 +122,15 @@ def class_page(
     return _render("serve_class.html.j2", **values, graded=graded, form=form)
 
 
-def feedback(hand_in: HandIn, folder: Path, shown: Shown) -> bytes:
+def feedback(hand_in: HandIn, folder: Path, shown_parts: ShownParts) -> bytes:
     """Return the page of a graded hand-in, with the parts that are shown."""
-    if shown is Shown.EVERYTHING:
+    if shown_parts is ShownParts.EVERYTHING:
         return (folder / PAGE).read_bytes()
-    report = visible.read(folder) if shown is Shown.VISIBLE else None
-    points = points_text(hand_in) if shown is Shown.POINTS else ""
-    return _render("serve_graded.html.j2", hand_in=hand_in, shown=shown.value, points=points, report=report).encode()
+    report = visible.read(folder) if shown_parts is ShownParts.VISIBLE else None
+    points = points_text(hand_in) if shown_parts is ShownParts.POINTS else ""
+    return _render(
+        "serve_graded.html.j2", hand_in=hand_in, shown=shown_parts.value, points=points, report=report
+    ).encode()
 
 
 def state(hand_in: HandIn, position: str) -> str:

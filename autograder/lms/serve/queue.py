@@ -12,10 +12,10 @@ from autograder.lms.serve.hand_in import HandIn
 def in_order(
     waiting: Iterable[HandIn], turns: Mapping[str, int], busy: Collection[str] = frozenset()
 ) -> Iterator[HandIn]:
-    """Yield the waiting answers in the order of their grading, as long as no other one arrives.
+    """Yield the waiting answers in the order in which they are graded if no other answer arrives.
 
     The next turn goes to the first student without a turn so far, or else to the student whose last turn was longest
-    ago. A student's own answers are graded in the order of their arrival. So no student overtakes another one twice.
+    ago. A student's answers are graded in the order of their arrival. So no student overtakes another one twice.
 
     Args:
         waiting: the answers, in any order.
@@ -25,7 +25,7 @@ def in_order(
     answers: dict[str, deque[HandIn]] = {}
     for answer in sorted(waiting, key=lambda hand_in: hand_in.number):
         answers.setdefault(answer.student, deque()).append(answer)
-    turn = 1 + max(turns.values(), default=0)  # of the students with a running grading
+    turn = 1 + max(turns.values(), default=0)  # the turn of the students whose answers are being graded
     last_turns = {**turns, **dict.fromkeys(busy, turn)}
     heap = [
         (last_turns.get(student, 0), student_answers[0].number, student) for student, student_answers in answers.items()

@@ -58,7 +58,7 @@ def address(environment: Mapping[str, str]) -> Address:
 def serve(settings: Settings, folder: Path, options: GradingOptions, listen_at: Address) -> None:
     """Serve until this process ends, which may happen at any time without losing an answer.
 
-    Raises UsageError if the folder or the address cannot be used, and IsolationError if the sandbox cannot be made.
+    Raises UsageError if the folder or the address cannot be used, and IsolationError if the sandbox cannot be created.
     """
     require(options.isolation)
     # Ctrl-C ends the process at once, like any other signal. The next start repeats the running gradings.
@@ -70,7 +70,7 @@ def serve(settings: Settings, folder: Path, options: GradingOptions, listen_at: 
 async def _serve(settings: Settings, store: Store, options: GradingOptions, listen_at: Address) -> None:
     grader = Grader(settings, store, options)
     service = Service(settings, store, grader, listen_at.prefix)
-    # Cookies expire when this process ends. The browser then logs in again without asking.
+    # Cookies expire when this process ends. The browser then logs in again without asking the user.
     server = HTTPServer(application(service, secrets.token_bytes(32)), max_body_size=4 * MAX_ANSWER)
     try:
         server.listen(listen_at.port, listen_at.host)

@@ -14,7 +14,7 @@ from autograder.lms.serve.pages import TIME
 from autograder.lms.serve.settings import Settings
 from autograder.lms.serve.store import Store
 
-MAX_HUB_REQUESTS = 8  # at the same time
+MAX_HUB_REQUESTS = 8  # requests to the hub at the same time
 
 
 class Refused(HTTPError):
@@ -38,7 +38,7 @@ class Service:
     hub_requests: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_HUB_REQUESTS))
 
     def require_try_left(self, student: str, assignment: str, at: datetime) -> None:
-        """Raise Refused, with the reason, if a student cannot hand in an assignment of the settings at this time."""
+        """Raise Refused, with the reason, if a student cannot hand in a configured assignment at this time."""
         rules = self.settings.assignments[assignment]
         due = rules.due_of(student)
         if due is not None and not rules.is_open(student, at):

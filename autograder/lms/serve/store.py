@@ -1,4 +1,4 @@
-"""The hand-ins on disk. Each method is one transaction, and durable when it returns.
+"""The hand-ins on disk. Each method is one transaction, whose changes are durable when it returns.
 
 One SQLite file contains the answers and the queue. Beside it, the result of each hand-in has a folder, which is named
 after the hand-in's number, never after a student. Only one process can open the store.
@@ -42,7 +42,7 @@ _COLUMNS = "number, student, assignment, at, status, points, max_points"
 
 
 class Store:
-    """The hand-ins in a private folder, which is created if necessary."""
+    """The stored hand-ins, in a private folder that is created if necessary."""
 
     def __init__(self, folder: Path) -> None:
         """Open the store. Raises UsageError if it cannot be opened, or if another process uses it."""
@@ -70,9 +70,8 @@ class Store:
             self._database.execute(f"PRAGMA user_version = {VERSION}")
         elif version != VERSION:
             raise sqlite3.DatabaseError(f"they have version {version}, but this program needs version {VERSION}")
-        self._database.execute(
-            "UPDATE hand_in SET turn = NULL WHERE status IS NULL"
-        )  # interrupted gradings are repeated
+        # Interrupted gradings are repeated.
+        self._database.execute("UPDATE hand_in SET turn = NULL WHERE status IS NULL")
 
     def close(self) -> None:
         """Close the store, so that another process can open it."""
@@ -137,7 +136,7 @@ class Store:
         return next(iter(self._select("number = ?", number)), None)
 
     def with_key(self, student: str, key: str) -> HandIn | None:
-        """Return the hand-in with this key of a student, or None."""
+        """Return a student's hand-in with this key, or None."""
         return next(iter(self._select("student = ? AND key = ?", student, key)), None)
 
     def of_student(self, student: str) -> list[HandIn]:

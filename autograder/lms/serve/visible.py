@@ -17,8 +17,8 @@ from autograder.run.sandbox import Isolation
 
 LOG = logging.getLogger(__name__)
 FILE = "visible.json"  # beside the result
-FAILED = "The visible checks could not be run here. Run check(...) in the notebook."
-NOT_RUN = "The visible checks were not run on this answer. Run check(...) in the notebook."
+COULD_NOT_RUN_SENTENCE = "The visible checks could not be run here. Run check(...) in the notebook."
+NOT_RUN_SENTENCE = "The visible checks were not run on this answer. Run check(...) in the notebook."
 
 
 @dataclass(frozen=True)
@@ -30,14 +30,14 @@ class VisibleReport:
 
 
 def run_visible(answer: Path, assignment: str, isolation: Isolation) -> VisibleReport:
-    """Run the visible checks on an answer in a worker sandbox, and log an error that they raise."""
+    """Run the visible checks on an answer in a worker sandbox, and log an error if they cannot be run."""
     try:
         all_checks: dict[str, Any] = {"exercises": (), "part": "", "first": ()}
         with run_on(answer.resolve(), isolation, "check", assignment=assignment, **all_checks) as (reply, _):
             diagnosis, checks = reply["diagnosis"], reply["checks"]
     except GraderError as error:
         LOG.error("The visible checks of %s: %s", assignment, visible(str(error)))
-        return VisibleReport(FAILED)
+        return VisibleReport(COULD_NOT_RUN_SENTENCE)
     sentence = "" if diagnosis["kind"] == OK.kind.value else diagnosis["sentence"]
     return VisibleReport(sentence, tuple(structure(CheckResult, check) for check in checks))
 
@@ -52,7 +52,7 @@ def read(folder: Path) -> VisibleReport:
     try:
         report: VisibleReport = structure(VisibleReport, json.loads((folder / FILE).read_text(encoding="utf-8")))
     except FileNotFoundError:  # it was graded with other settings
-        return VisibleReport(NOT_RUN)
+        return VisibleReport(NOT_RUN_SENTENCE)
     except (ValueError, TypeError, KeyError) as error:
         raise UsageError(f"{folder / FILE}: cannot be read: {error}") from None
     return report

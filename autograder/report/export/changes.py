@@ -23,8 +23,8 @@ class Change:
     """A student whose result differs between two gradings.
 
     Attributes:
-        before: points in the old grading, or None without a mark.
-        after: points in the new grading, or None without a mark.
+        before: points in the old grading, or None if it gave no mark.
+        after: points in the new grading, or None if it gave no mark.
         same_submission: whether both gradings used the same files.
         checks: the checks whose points differ, in the order of the suite.
     """
@@ -46,11 +46,15 @@ def changes(old: Sequence[Result], new: Sequence[Result]) -> tuple[Change, ...]:
     before, after = _by_student(old, "old"), _by_student(new, "new")
     changed = []
     for key in dict.fromkeys((*before, *after)):
-        first, second = before.get(key), after.get(key)
-        checks = tuple(_checks(first, second))
-        if checks or _mark(first) != _mark(second):
-            same = first is not None and second is not None and first.submission_sha256 == second.submission_sha256
-            changed.append(Change(*key, _mark(first), _mark(second), same, checks))
+        old_result, new_result = before.get(key), after.get(key)
+        checks = tuple(_checks(old_result, new_result))
+        if checks or _mark(old_result) != _mark(new_result):
+            is_same = (
+                old_result is not None
+                and new_result is not None
+                and old_result.submission_sha256 == new_result.submission_sha256
+            )
+            changed.append(Change(*key, _mark(old_result), _mark(new_result), is_same, checks))
     return tuple(changed)
 
 
@@ -70,11 +74,11 @@ def _mark(result: Result | None) -> float | None:
     return None if result is None or result.status is not Status.GRADED else result.score
 
 
-def _checks(first: Result | None, second: Result | None) -> Iterator[CheckChange]:
-    if first is None or second is None:
+def _checks(old_result: Result | None, new_result: Result | None) -> Iterator[CheckChange]:
+    if old_result is None or new_result is None:
         return
-    before = {check.id: check.points for check in first.checks}
-    after = {check.id: check.points for check in second.checks}
+    before = {check.id: check.points for check in old_result.checks}
+    after = {check.id: check.points for check in new_result.checks}
     for name in dict.fromkeys((*before, *after)):
         if before.get(name) != after.get(name):
             yield CheckChange(name, before.get(name), after.get(name))

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from autograder.exceptions import UsageError
-from autograder.result.class_folder import MANY, ONE, why_not_a_folder
+from autograder.result.class_folder import RESULT, RESULTS, folder_name_problem
 from autograder.result.model import UNFINISHED, Result, from_json
 
 
@@ -27,10 +27,11 @@ def load(path: Path) -> tuple[Result, ...]:
         raise UsageError(f"{path}: no such file or folder; use the folder that `autograder grade --out` wrote")
     if path.is_file():
         return _read(path)
-    complete = (file for file in path.rglob(ONE) if file.parent.name != UNFINISHED)  # its grading was interrupted
-    files = sorted(complete) or sorted(path.glob(MANY))
+    # An interrupted grading leaves its files in a folder with the name UNFINISHED.
+    complete = (file for file in path.rglob(RESULT) if file.parent.name != UNFINISHED)
+    files = sorted(complete) or sorted(path.glob(RESULTS))
     if not files:
-        raise UsageError(f"{path} contains no {ONE}; use the folder that `autograder grade --out` wrote")
+        raise UsageError(f"{path} contains no {RESULT}; use the folder that `autograder grade --out` wrote")
     return tuple(result for file in files for result in _read(file))
 
 
@@ -43,7 +44,7 @@ def per_student(results: Sequence[Result], out: Path) -> list[tuple[Result, Path
     pairs: dict[str, tuple[Result, Path]] = {}
     for result in results:
         student = result.student
-        if problem := why_not_a_folder(student):
+        if problem := folder_name_problem(student):
             raise UsageError(f"{problem}; or use a format without folders")
         if student in pairs:
             raise UsageError(f"the student {student!r} has two results; export one assignment at a time")
@@ -62,6 +63,6 @@ def _read(file: Path) -> tuple[Result, ...]:
     return tuple(replace(result, folder=_folder(result, file.parent)) for result in results)
 
 
-def _folder(result: Result, beside: Path) -> Path:
-    own_folder = beside / result.student
-    return own_folder if own_folder.is_dir() else beside
+def _folder(result: Result, parent: Path) -> Path:
+    student_folder = parent / result.student
+    return student_folder if student_folder.is_dir() else parent

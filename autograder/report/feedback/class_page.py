@@ -22,7 +22,7 @@ from autograder.suite import Outcome
 
 @dataclass(frozen=True)
 class Choice:
-    """A choice of the filter.
+    """A choice in the filter of the table.
 
     Attributes:
         number: its index among the choices.
@@ -38,7 +38,7 @@ class Choice:
 
 
 def choices(results: Sequence[Result]) -> tuple[Choice, ...]:
-    """Return the choices that show some of the results, but not all. Checks are ordered by their failures."""
+    """Return the choices that show some of the results, but not all. Checks with the most failures come first."""
     marks: dict[str, set[int]] = {"Not graded": set(), "Less than half": set(), "Full marks": set()}
     missed_by: dict[tuple[str, str], set[int]] = {}
     titles: dict[tuple[str, str], str] = {}
@@ -98,4 +98,4 @@ def _reason(result: Result) -> str:
         return no_mark(result)
     if not page.started:
         return result.diagnosis.sentence
-    return (page.first.message or page.first.title) if page.first else ""
+    return (page.costliest.message or page.costliest.title) if page.costliest else ""

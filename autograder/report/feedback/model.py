@@ -21,18 +21,18 @@ class CheckView:
 
     Attributes:
         result: its result.
-        contract: the requirements that the program broke. For a check that failed with another one, only those that
-            are not already quoted there.
+        contract: the requirements that the program broke. For a check that failed because of another one,
+            only those that are not already quoted with the other.
         pictures: its pictures.
-        also: the checks that also failed.
+        also_failed: the checks that failed because of it.
         not_checked: a line about checks that could not be run, or an empty string.
-        unnamed: the titles of the checks that this line only counts.
+        unnamed: the titles of the checks that this line counts but does not name.
     """
 
     result: CheckResult
     contract: tuple[str, ...]
     pictures: tuple[Picture, ...]
-    also: tuple[CheckView, ...] = ()
+    also_failed: tuple[CheckView, ...] = ()
     not_checked: str = ""
     unnamed: tuple[str, ...] = ()
 
@@ -43,7 +43,7 @@ class CheckView:
 
 
 @dataclass(frozen=True)
-class Elsewhere:
+class DependentChecks:
     """Checks of a group that did not pass because of a check in another group."""
 
     cause: CheckResult
@@ -55,8 +55,8 @@ class Elsewhere:
         return f"{len(self.results)} check{'s' if len(self.results) > 1 else ''}"
 
     @property
-    def lost(self) -> float:
-        """The points that they cost."""
+    def lost_points(self) -> float:
+        """The points that these checks lost."""
         return sum(result.max_points - result.points for result in self.results)
 
 
@@ -68,13 +68,13 @@ class GroupView:
         name: the group's name.
         results: the results of all its checks.
         checks: the checks to show, including related ones from other groups.
-        elsewhere: its checks that are shown in other groups.
+        elsewhere: the checks of this group that are shown in other groups.
     """
 
     name: str
     results: tuple[CheckResult, ...]
     checks: tuple[CheckView, ...]
-    elsewhere: tuple[Elsewhere, ...] = ()
+    elsewhere: tuple[DependentChecks, ...] = ()
 
     @property
     def points(self) -> float:
@@ -87,7 +87,7 @@ class GroupView:
     @property
     def pictures(self) -> tuple[Picture, ...]:
         """The pictures of all shown checks."""
-        views = (view for check in self.checks for view in (check, *check.also))
+        views = (view for check in self.checks for view in (check, *check.also_failed))
         return tuple(picture for view in views for picture in view.pictures)
 
 
@@ -99,14 +99,14 @@ class PageView:
         result: the result to show.
         groups: the groups of checks, in the order of the suite.
         pictures: pictures that do not belong to a check.
-        first: the failed check that costs the most points, including checks that failed or were not run because of it;
-            None if no check failed.
+        costliest: the failed check that costs the most points, including checks that failed or were not run because of
+            it; None if no check failed.
     """
 
     result: Result
     groups: tuple[GroupView, ...]
     pictures: tuple[Picture, ...]
-    first: CheckResult | None
+    costliest: CheckResult | None
 
     @property
     def graded(self) -> bool:
@@ -119,14 +119,14 @@ class PageView:
         return self.result.diagnosis.kind is Kind.OK
 
     @property
-    def plays(self) -> bool:
-        """Whether the page contains a run to play."""
+    def has_player(self) -> bool:
+        """Whether the page contains a player with a run."""
         pictures = [*self.pictures, *(picture for group in self.groups for picture in group.pictures)]
         return self.graded and any(picture.run is not None for picture in pictures)
 
     @property
     def percent(self) -> int:
-        """The score in per cent, rounded down."""
+        """The score as a percentage, rounded down."""
         return int(self.result.percent + 1e-9)
 
 
@@ -147,7 +147,7 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Requir
     all_causes = causes(result.checks, result.diagnosis.sentence)
 
     def view(check: CheckResult, cause: Cause | None = None, quoted: tuple[str, ...] = ()) -> CheckView:
-        # A program that does not run breaks no particular requirement.
+        # A program that does not run does not break a particular requirement.
         is_specific = check.outcome is Outcome.FAILED and check.message != result.diagnosis.sentence
         covered = check.holds if is_specific else ()
         sentences = dict.fromkeys(contract[name].text for name in covered if name in contract)
@@ -155,18 +155,18 @@ def page_view(result: Result, folder: Path | None, contract: Mapping[str, Requir
         check_view = CheckView(check, unquoted, tuple(pictures.get(check.id, ())))
         if cause is None:
             return check_view
-        also: list[CheckView] = []
-        for failed in cause.failed:
-            earlier = (sentence for other in also for sentence in other.contract)
-            also.append(view(failed, quoted=(*unquoted, *earlier)))
-        return replace(check_view, also=tuple(also), not_checked=cause.not_checked, unnamed=cause.unnamed)
+        also_failed: list[CheckView] = []
+        for failed_check in cause.failed:
+            earlier = (sentence for other in also_failed for sentence in other.contract)
+            also_failed.append(view(failed_check, quoted=(*unquoted, *earlier)))
+        return replace(check_view, also_failed=tuple(also_failed), not_checked=cause.not_checked, unnamed=cause.unnamed)
 
     groups = []
     for name in dict.fromkeys(check.group for check in result.checks):
         views = tuple(view(cause.check, cause) for cause in all_causes if cause.check.group == name)
         members = ((cause, tuple(check for check in cause.checks if check.group == name)) for cause in all_causes)
         elsewhere = tuple(
-            Elsewhere(cause.check, checks) for cause, checks in members if checks and cause.check.group != name
+            DependentChecks(cause.check, checks) for cause, checks in members if checks and cause.check.group != name
         )
         groups.append(GroupView(name, result.group(name), views, elsewhere))
     return PageView(result, tuple(groups), tuple(pictures.get("", ())), costliest_failure(all_causes))

@@ -1,6 +1,6 @@
-"""Renders the pages from the templates. All text is escaped. A page does not load other files.
+"""Renders the pages from the templates. All text is escaped. A page loads no other files.
 
-A page only allows its own scripts, which its policy lists by digest: the player of a run, or the sorting of a table.
+The content security policy of a page lists the digest of each script that may run: the player, or the table sorter.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def environment() -> jinja2.Environment:
 
 
 def digest(script: str) -> str:
-    """Return the digest of a script for a page's policy, which allows no other scripts."""
+    """Return the digest of a script for a page's content security policy, which blocks all other scripts."""
     return base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
 
 
@@ -76,7 +76,7 @@ def write(result: Result, folder: Path, *, artifacts: Path | None = None) -> Pat
     """
     requirements = contract(result.assignment) if result.assignment in course_paths.assignments() else {}
     page = page_view(result, artifacts or folder, requirements)
-    script, style = _player_assets() if page.plays else ("", "")
+    script, style = _player_assets() if page.has_player else ("", "")
     return write_page(
         folder / PAGE,
         "feedback.html.j2",
@@ -100,7 +100,7 @@ def _player_assets() -> tuple[str, str]:
 
 
 def _player(picture: Picture, first: bool = False) -> Markup:
-    """Return the player of a picture's run. A link to an instant without a run refers to the first player."""
+    """Return the player of a picture's run. A link to a time that does not name a run refers to the first player."""
     from sim.view import player
 
     alt = escape(clean(picture.caption), quote=True)

@@ -1,4 +1,4 @@
-"""Reads the pictures and runs beside a result for a page."""
+"""Reads the pictures and runs of a result for its page."""
 
 from __future__ import annotations
 

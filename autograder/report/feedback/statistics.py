@@ -11,8 +11,8 @@ from statistics import StatisticsError, correlation, median
 from autograder.result.model import CheckResult, Result
 from autograder.suite import Outcome
 
-BAND_PERCENT = 10  # width of a bar of the distribution
-SHOWN_REASONS = 8
+BAND_PERCENT = 10  # the width of a bar in the distribution
+MAX_REASONS = 8
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class CheckStatistics:
 
     Attributes:
         passed: the number of submissions that passed it, of `total`.
-        difficulty: mean share of its points that was reached, 0 to 1. Test theory calls it the difficulty of an item.
+        difficulty: mean share of its points that was earned, 0 to 1. Test theory calls it the difficulty of an item.
         discrimination: correlation of its points with the points of all other checks, -1 to 1. Near 0 or below, the
             check separates strong answers from weak ones no better than chance. None if all points are equal.
     """
@@ -41,7 +41,7 @@ class ClassStatistics:
     Attributes:
         bands: number of results in each band of `BAND_PERCENT` per cent, from 0. Full marks are in the last band.
         checks: the checks that some submissions did not pass, most failures first.
-        reasons: the most frequent messages of failed checks, each with its number of students.
+        reasons: the most frequent messages of failed checks, each with the number of students who got it.
         seconds: median wall time of a grading.
     """
 
@@ -68,7 +68,7 @@ def class_statistics(results: Sequence[Result]) -> ClassStatistics:
     return ClassStatistics(
         tuple(bands[band] for band in range(100 // BAND_PERCENT)),
         tuple(missed),
-        tuple((message, count) for message, count in messages.most_common(SHOWN_REASONS) if count > 1),
+        tuple((message, count) for message, count in messages.most_common(MAX_REASONS) if count > 1),
         median(result.seconds for result in results),
     )
 

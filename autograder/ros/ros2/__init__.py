@@ -1,7 +1,7 @@
-"""The `ros2` command, where `ros2cli` has no wheel: the same verbs, options, output and exit codes.
+"""A stand-in for the `ros2` command, because `ros2cli` has no wheel. It has the same options, output and exit codes.
 
-This is a stand-in. It steps aside whenever the real `ros2cli` is importable: install that with `make real-launch`, or
-source an installation of ROS 2. There is no daemon: each call discovers the graph itself.
+The real `ros2cli` is used instead if it can be imported: install it with `make real-launch`, or source an installation
+of ROS 2. The stand-in has no daemon. Each call discovers the graph itself.
 """
 
 from autograder.ros.ros2.main import main, run

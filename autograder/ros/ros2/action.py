@@ -14,9 +14,9 @@ from rclpy.action import (
 )
 
 from autograder.ros.ros2 import graph
-from autograder.ros.ros2.filling import add_values, filled, given_values
+from autograder.ros.ros2.message_values import add_values_argument, make_message, read_values
 from autograder.ros.ros2.parsing import ExitCode, Verb
-from autograder.ros.ros2.session import Session, add_session_arguments, open_session, signals_held_back
+from autograder.ros.ros2.session import Session, add_session_arguments, deferred_signals, open_session
 
 _STATUS = {
     GoalStatus.STATUS_ACCEPTED: "ACCEPTED",
@@ -51,7 +51,7 @@ def _list(args: argparse.Namespace) -> ExitCode:
 def _send_goal_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action_name", help="Name of the ROS action (e.g. '/fibonacci')")
     parser.add_argument("action_type", help="Type of the ROS action (e.g. 'my_interfaces/action/Fibonacci')")
-    add_values(parser, "goal", "Goal request values in YAML format (e.g. '{order: 10}')")
+    add_values_argument(parser, "goal", "Goal request values in YAML format (e.g. '{order: 10}')")
     parser.add_argument("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
     add_session_arguments(parser)
 
@@ -60,7 +60,7 @@ def _send_goal(args: argparse.Namespace) -> ExitCode:
     from rosidl_runtime_py import message_to_yaml
 
     action_class = graph.load_class(args.action_type, "action")
-    goal, _ = filled(action_class.Goal, given_values(args, "goal"), "message fields", stamps=False)
+    goal, _ = make_message(action_class.Goal, read_values(args, "goal"), "message fields", allow_stamps=False)
 
     def on_feedback(message: Any) -> None:
         print(f"Feedback:\n    {message_to_yaml(message.feedback)}")
@@ -70,32 +70,32 @@ def _send_goal(args: argparse.Namespace) -> ExitCode:
         print("Waiting for an action server to become available...")
         session.wait_for(client.server_is_ready, timeout=float("inf"))
         print(f"Sending goal:\n     {message_to_yaml(goal)}")
-        sending = client.send_goal_async(goal, on_feedback if args.feedback else None)
-        session.spin_until(sending)
-        handle = sending.result()
+        goal_future = client.send_goal_async(goal, on_feedback if args.feedback else None)
+        session.spin_until(goal_future)
+        handle = goal_future.result()
         if not handle.accepted:
             print("Goal was rejected.")
             return None
-        with signals_held_back() as interrupts:
+        with deferred_signals() as interrupts:
             print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
-            finishing = handle.get_result_async()
-            session.wait_for(lambda: finishing.done() or bool(interrupts), math.inf)
+            result_future = handle.get_result_async()
+            session.wait_for(lambda: result_future.done() or bool(interrupts), math.inf)
             if interrupts:
                 _cancel(session, handle)
         for number in interrupts[:1]:
             signal.raise_signal(number)
-        answer = finishing.result()
-        print(f"Result:\n    {message_to_yaml(answer.result)}")
-        print(f"Goal finished with status: {_STATUS.get(answer.status, 'UNKNOWN')}")
+        response = result_future.result()
+        print(f"Result:\n    {message_to_yaml(response.result)}")
+        print(f"Goal finished with status: {_STATUS.get(response.status, 'UNKNOWN')}")
         client.destroy()
     return None
 
 
 def _cancel(session: Session, handle: Any) -> None:
-    """Ask the server to give up the goal, so that Ctrl-C does not leave the robot at it."""
+    """Ask the server to cancel the goal, so that the robot does not pursue it after Ctrl-C."""
     print("Canceling goal...")
-    cancelling = handle.cancel_goal_async()
-    if session.spin_until(cancelling, timeout=5.0) and cancelling.result().goals_canceling:
+    cancel_future = handle.cancel_goal_async()
+    if session.spin_until(cancel_future, timeout=5.0) and cancel_future.result().goals_canceling:
         print("Goal canceled.")
     else:
         print("Failed to cancel goal")

@@ -1,4 +1,4 @@
-"""`ros2 doctor` (`ros2 wtf`): does this machine have what ROS 2 needs, and does the graph hang together?"""
+"""`ros2 doctor` (`ros2 wtf`): checks this machine and the ROS graph."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ Row = tuple[str, object]
 
 @dataclass(frozen=True)
 class Check:
-    """One thing to look at.
+    """A check of the machine or the graph.
 
     Attributes:
-        name: as in the summary of failed checks.
-        title: over its report.
-        errors: yields what is broken.
-        warnings: yields what may be.
-        report: yields names and values for `--report`.
+        name: its name in the summary of failed checks.
+        title: the heading of its report.
+        errors: a function that yields a sentence for each error.
+        warnings: a function that yields a sentence for each possible problem.
+        report: a function that yields the names and values that `--report` prints.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Check:
     report: Callable[[Session], Iterator[Row]]
 
 
-def _nothing(_: Session) -> Iterator[str]:
+def _no_messages(_: Session) -> Iterator[str]:
     yield from ()
 
 
@@ -88,13 +88,15 @@ def _rmw_report(_: Session) -> Iterator[Row]:
 
 
 def _package_report(_: Session) -> Iterator[Row]:
-    found = {d.metadata["Name"]: d.version for d in metadata.distributions() if d.metadata["Name"].startswith("ros-")}
-    yield from sorted(found.items())
+    versions = {
+        d.metadata["Name"]: d.version for d in metadata.distributions() if d.metadata["Name"].startswith("ros-")
+    }
+    yield from sorted(versions.items())
 
 
 def _topic_warnings(session: Session) -> Iterator[str]:
     for name, _ in graph.topic_names_and_types(session):
-        # Each node has these two, and whoever listens to them is a tool.
+        # Every node publishes these two, and only tools subscribe to them.
         if name in ("/parameter_events", "/rosout"):
             continue
         publishers, subscribers = session.node.count_publishers(name), session.node.count_subscribers(name)
@@ -112,19 +114,21 @@ def _topic_report(session: Session) -> Iterator[Row]:
 
 
 CHECKS = (
-    Check("platform", "PLATFORM INFORMATION", _platform_errors, _nothing, _platform_report),
+    Check("platform", "PLATFORM INFORMATION", _platform_errors, _no_messages, _platform_report),
     Check("network", "NETWORK CONFIGURATION", _network_errors, _network_warnings, _network_report),
-    Check("installation", "ROS 2 INFORMATION", _nothing, _nothing, _installation_report),
-    Check("middleware", "RMW MIDDLEWARE", _nothing, _nothing, _rmw_report),
-    Check("package", "PACKAGE VERSIONS", _nothing, _nothing, _package_report),
-    Check("topic", "TOPIC LIST", _nothing, _topic_warnings, _topic_report),
+    Check("installation", "ROS 2 INFORMATION", _no_messages, _no_messages, _installation_report),
+    Check("middleware", "RMW MIDDLEWARE", _no_messages, _no_messages, _rmw_report),
+    Check("package", "PACKAGE VERSIONS", _no_messages, _no_messages, _package_report),
+    Check("topic", "TOPIC LIST", _no_messages, _topic_warnings, _topic_report),
 )
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    what = parser.add_mutually_exclusive_group()
-    what.add_argument("-r", "--report", action="store_true", help="Print all reports")
-    what.add_argument("-rf", "--report-failed", action="store_true", help="Print reports of failed checks only")
+    report_options = parser.add_mutually_exclusive_group()
+    report_options.add_argument("-r", "--report", action="store_true", help="Print all reports")
+    report_options.add_argument(
+        "-rf", "--report-failed", action="store_true", help="Print reports of failed checks only"
+    )
     parser.add_argument(
         "-ep", "--exclude-packages", action="store_true", help="Exclude package checks or report from doctor"
     )

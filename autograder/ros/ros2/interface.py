@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from autograder.ros.ros2.exceptions import Ros2Error
-from autograder.ros.ros2.interface_text import unfold
+from autograder.ros.ros2.interface_text import expand_lines
 from autograder.ros.ros2.parsing import ExitCode, Verb
 
 _KINDS = (("m", "msg", "Messages"), ("s", "srv", "Services"), ("a", "action", "Actions"))
@@ -20,8 +20,8 @@ def _kind_arguments(parser: argparse.ArgumentParser) -> None:
         )
 
 
-def _chosen(args: argparse.Namespace, packages: tuple[str, ...] = ()) -> list[tuple[str, dict[str, list[str]]]]:
-    """Return a heading and the interfaces by package, for each kind asked for, all kinds by default.
+def _interfaces(args: argparse.Namespace, packages: tuple[str, ...] = ()) -> list[tuple[str, dict[str, list[str]]]]:
+    """Return a heading and the interfaces, by package, of each kind that the options select (all by default).
 
     Raises:
         LookupError: one of `packages` does not exist, or has no interfaces.
@@ -29,12 +29,12 @@ def _chosen(args: argparse.Namespace, packages: tuple[str, ...] = ()) -> list[tu
     from rosidl_runtime_py import get_action_interfaces, get_message_interfaces, get_service_interfaces
 
     getters = {"msg": get_message_interfaces, "srv": get_service_interfaces, "action": get_action_interfaces}
-    asked = [kind for _, kind, _ in _KINDS if getattr(args, f"only_{kind}s")]
-    return [(plural, getters[kind](packages)) for _, kind, plural in _KINDS if not asked or kind in asked]
+    kinds = [kind for _, kind, _ in _KINDS if getattr(args, f"only_{kind}s")]
+    return [(plural, getters[kind](packages)) for _, kind, plural in _KINDS if not kinds or kind in kinds]
 
 
 def _list(args: argparse.Namespace) -> ExitCode:
-    for heading, by_package in _chosen(args):
+    for heading, by_package in _interfaces(args):
         print(f"{heading}:")
         for package in sorted(by_package):
             for name in sorted(by_package[package]):
@@ -49,10 +49,10 @@ def _package_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _package(args: argparse.Namespace) -> ExitCode:
     try:
-        chosen = _chosen(args, (args.package_name,))
+        interfaces = _interfaces(args, (args.package_name,))
     except LookupError as error:
-        return _message(error)
-    for name in sorted(name for _, found in chosen for name in found.get(args.package_name, ())):
+        return _error_text(error)
+    for name in sorted(name for _, by_package in interfaces for name in by_package.get(args.package_name, ())):
         print(f"{args.package_name}/{name}")
     return None
 
@@ -63,29 +63,31 @@ def _show_arguments(parser: argparse.ArgumentParser) -> None:
         help="Show an interface definition (e.g. 'std_msgs/msg/String'). '-' reads the name from stdin "
         "(e.g. 'ros2 topic type /chatter | ros2 interface show -')",
     )
-    which = parser.add_mutually_exclusive_group()
-    which.add_argument("--all-comments", action="store_true", help="Show all comments, including for nested interfaces")
-    which.add_argument("--no-comments", action="store_true", help="Show no comments or whitespace")
+    comment_options = parser.add_mutually_exclusive_group()
+    comment_options.add_argument(
+        "--all-comments", action="store_true", help="Show all comments, including for nested interfaces"
+    )
+    comment_options.add_argument("--no-comments", action="store_true", help="Show no comments or whitespace")
 
 
 def _show(args: argparse.Namespace) -> ExitCode:
-    name = _name(args.type)
-    lines = unfold(name, _read, comments=not args.no_comments, nested_comments=args.all_comments)
+    name = _type_name(args.type)
+    lines = expand_lines(name, _read_definition, comments=not args.no_comments, nested_comments=args.all_comments)
     try:
-        # Complete before anything is printed: an unknown nested type then gives an error alone.
+        # All lines are read before the first one is printed, so that only an error is printed for an unknown type.
         print(*list(lines), sep="\n")
     except (LookupError, ValueError) as error:
-        return _message(error)
+        return _error_text(error)
     return None
 
 
-def _read(name: str) -> str:
+def _read_definition(name: str) -> str:
     from rosidl_runtime_py import get_interface_path
 
     return Path(get_interface_path(name)).read_text(encoding="utf-8")
 
 
-def _name(text: str) -> str:
+def _type_name(text: str) -> str:
     if text != "-":
         return text
     if sys.stdin.isatty():
@@ -93,7 +95,7 @@ def _name(text: str) -> str:
     return sys.stdin.readline().strip()
 
 
-def _message(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     return str(error.args[0]) if error.args else str(error)
 
 

@@ -1,4 +1,4 @@
-"""The text of an interface as `ros2 interface show` prints it: nested messages unfolded below their fields."""
+"""The text of an interface as `ros2 interface show` prints it: nested messages are expanded below their fields."""
 
 from __future__ import annotations
 
@@ -14,29 +14,31 @@ _PRIMITIVES = {
 _FIELD = re.compile(r"\s*(?P<type>[A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*\s*(?!=)")
 
 
-def unfold(
+def expand_lines(
     name: str, read: Callable[[str], str], *, comments: bool = True, nested_comments: bool = False, depth: int = 0
 ) -> Iterator[str]:
-    """Yield the lines of an interface, each nested message's lines after its field, one tab deeper.
+    """Yield the lines of an interface. The lines of a nested message follow its field, indented by one more tab.
 
     Args:
         name: `package/kind/Name`.
-        read: returns the definition of an interface, given its name.
-        comments: keep comments and blank lines of the interface itself.
-        nested_comments: keep those of the nested messages as well.
-        depth: how many tabs to indent by.
+        read: a function that takes the name of an interface and returns its definition.
+        comments: whether to keep comments and blank lines of the interface itself.
+        nested_comments: whether to keep comments and blank lines of nested messages.
+        depth: the number of tabs that indent the lines.
     """
     for line in read(name).rstrip().splitlines():
-        shown = line.rstrip() if comments else _without_comment(line)
-        if comments or shown:
-            yield "\t" * depth + shown if shown else ""
-        inner = nested_type(line, name.split("/")[0])
-        if inner:
-            yield from unfold(inner, read, comments=nested_comments, nested_comments=nested_comments, depth=depth + 1)
+        text = line.rstrip() if comments else _without_comment(line)
+        if comments or text:
+            yield "\t" * depth + text if text else ""
+        nested_name = nested_type(line, name.split("/")[0])
+        if nested_name:
+            yield from expand_lines(
+                nested_name, read, comments=nested_comments, nested_comments=nested_comments, depth=depth + 1
+            )
 
 
 def nested_type(line: str, package: str) -> str | None:
-    """Return the full name of the message that a line's field holds, `None` for any other line."""
+    """Return the full name of the message type of a line's field, or `None` for any other line."""
     field = _FIELD.match(_without_comment(line))
     if not field or field["type"] in _PRIMITIVES:
         return None
@@ -47,7 +49,7 @@ def nested_type(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """Cut a comment off; a `#` inside a quoted default value does not begin one."""
+    """Remove a line's comment. A `#` inside a quoted default value does not begin a comment."""
     quote = ""
     for position, char in enumerate(line):
         if quote:

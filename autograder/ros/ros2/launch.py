@@ -1,4 +1,4 @@
-"""`ros2 launch`: find a launch file and hand it to `launch`, the real one or its stand-in."""
+"""`ros2 launch`: finds a launch file and passes it to `launch`, the real one or its stand-in."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 
 from autograder.ros.ros2 import packages
-from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, Ros2Error
+from autograder.ros.ros2.exceptions import INSTALL_HINT, Ros2Error
 from autograder.ros.ros2.parsing import ExitCode, Verb
 
-OVERRIDE = "OVERRIDE_LAUNCH_PROCESS_OUTPUT"  # read by `launch`, the real one or its stand-in
+OVERRIDE_VARIABLE = "OVERRIDE_LAUNCH_PROCESS_OUTPUT"  # read by `launch`, the real one or its stand-in
 _SUFFIXES = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 
 
@@ -26,8 +26,8 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-d", "--debug", action="store_true", help="Put the launch system in debug mode, provides more verbose output"
     )
-    which = parser.add_mutually_exclusive_group()
-    which.add_argument(
+    modes = parser.add_mutually_exclusive_group()
+    modes.add_argument(
         "-p",
         "--print",
         "--print-description",
@@ -35,7 +35,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="Print the launch description to the console without launching it",
     )
-    which.add_argument(
+    modes.add_argument(
         "-s",
         "--show-args",
         "--show-arguments",
@@ -48,7 +48,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
         "--show-all-subprocesses-output",
         action="store_true",
         help="Show all launched subprocesses' output by overriding their output configuration using the "
-        f"{OVERRIDE} envvar",
+        f"{OVERRIDE_VARIABLE} envvar",
     )
     parser.add_argument("--launch-prefix", help="Prefix command, which should go before all executables")
     parser.add_argument(
@@ -75,17 +75,17 @@ def _run(args: argparse.Namespace) -> ExitCode:
     if args.launch_prefix_filter is not None:
         arguments["launch-prefix-filter"] = args.launch_prefix_filter
     if args.show_all_subprocesses_output:
-        os.environ[OVERRIDE] = "both"
+        os.environ[OVERRIDE_VARIABLE] = "both"
     try:
         import launch
         from launch.launch_description_sources import AnyLaunchDescriptionSource
     except ModuleNotFoundError as error:
-        return f"`ros2 launch` needs the Python package launch ({error}): {HOW_TO_GET_THE_REAL_ONE}"
+        return f"`ros2 launch` needs the Python package launch ({error}): {INSTALL_HINT}"
     source = AnyLaunchDescriptionSource(str(path))
     if args.show_args or args.print_description:
         description = source.get_launch_description(launch.LaunchContext(argv=words, noninteractive=True))
         if args.show_args:
-            # `launch_testing` has the same words.
+            # `launch_testing` prints the arguments in the same format.
             from launch_testing.print_arguments import print_arguments_of_launch_description
 
             print_arguments_of_launch_description(launch_description=description)
@@ -100,43 +100,46 @@ def _run(args: argparse.Namespace) -> ExitCode:
 
 
 def find_launch_file(package: str, name: str | None, words: list[str]) -> tuple[Path, list[str]]:
-    """Find the launch file that the words name; return its path and the words left over as launch arguments.
+    """Find a launch file by its package and name, or by its path alone.
+
+    Returns:
+        The file's path, and the remaining words, which are launch arguments.
 
     Raises:
         Ros2Error: no such package or file, or several files of that name.
     """
-    alone = Path(package)
-    if alone.is_file():
-        return alone.absolute(), ([name] if name is not None else []) + words
+    path = Path(package)
+    if path.is_file():
+        return path.absolute(), ([name] if name is not None else []) + words
     if "/" in package or package.endswith(_SUFFIXES):
         raise Ros2Error(f"File '{package}' not found")
     prefix = packages.prefix_of(package)
     if name is None:
         raise Ros2Error("launch_file_name is required when package_name is not a path to a launch file")
     share = prefix / "share" / package
-    found = sorted(path for path in share.rglob(Path(name).name) if path.is_file() and str(path).endswith(f"/{name}"))
-    if not found:
+    paths = sorted(path for path in share.rglob(Path(name).name) if path.is_file() and str(path).endswith(f"/{name}"))
+    if not paths:
         raise Ros2Error(
             f"file '{name}' was not found in the share directory of package '{package}' which is at '{share}'"
         )
-    if len(found) > 1:
-        raise Ros2Error(f"file '{name}' was found more than once in package '{package}': {', '.join(map(str, found))}")
-    return found[0], words
+    if len(paths) > 1:
+        raise Ros2Error(f"file '{name}' was found more than once in package '{package}': {', '.join(map(str, paths))}")
+    return paths[0], words
 
 
 def launch_arguments(words: list[str]) -> dict[str, str]:
-    """Parse words of the form `<name>:=<value>`; the last one of a name wins.
+    """Parse words of the form `<name>:=<value>`. The last word with a name takes precedence.
 
     Raises:
-        Ros2Error: a word has another form.
+        Ros2Error: a word has a different form.
     """
-    parsed: dict[str, str] = {}
+    arguments: dict[str, str] = {}
     for word in words:
-        name, sign, value = word.partition(":=")
-        if not sign or not name or not value:
+        name, separator, value = word.partition(":=")
+        if not separator or not name or not value:
             raise Ros2Error(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
-        parsed[name] = value
-    return parsed
+        arguments[name] = value
+    return arguments
 
 
 VERB = Verb("launch", "Run a launch file", _arguments, _run)

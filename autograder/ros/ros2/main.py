@@ -1,4 +1,4 @@
-"""The entry point: the real `ros2` if there is one, else the stand-in."""
+"""The entry point of `ros2`: runs the real command if it is installed, and otherwise the stand-in."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from autograder.ros import RosError, activate
 from autograder.ros.ros2.exceptions import Ros2Error
 from autograder.ros.ros2.parsing import Command, ExitCode, parse
 
-STAND_INS = Path(__file__).parents[1] / "standins"
+STANDINS_FOLDER = Path(__file__).parents[1] / "standins"
 
 COMMANDS = {
     "action": Command("Various action related sub-commands", "action", ("echo", "find", "info", "type")),
@@ -45,7 +45,7 @@ COMMANDS = {
 def main(argv: Sequence[str] | None = None) -> ExitCode:
     """Run `ros2` and return its exit code, or the text of an error (for `sys.exit`, which prints it and exits with 1).
 
-    Ctrl-C gives 2 and SIGTERM 15, as in the real one.
+    The exit code is 2 after Ctrl-C and 15 after SIGTERM, as in the real command.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
@@ -56,20 +56,21 @@ def main(argv: Sequence[str] | None = None) -> ExitCode:
         if importlib.util.find_spec("ros2cli") is not None:
             outcome: ExitCode = importlib.import_module("ros2cli.cli").main(argv=arguments)
             return outcome
-        return stand_in(arguments)
+        return run_stand_in(arguments)
     except BrokenPipeError:
-        # `ros2 topic echo /scan | head`: nobody reads on. Python would complain once more when it closes stdout.
+        # The reader closed the pipe, as in `ros2 topic echo /scan | head`. With stdout redirected, Python does not
+        # raise the error again when it closes stdout.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
 
 
-def stand_in(arguments: Sequence[str]) -> ExitCode:
-    """Run the stand-in for `ros2` once ROS is switched on; return its exit code, or the text of an error."""
-    if str(STAND_INS) not in sys.path:
-        sys.path.append(str(STAND_INS))
+def run_stand_in(arguments: Sequence[str]) -> ExitCode:
+    """Run the stand-in for `ros2`, with ROS active. Return its exit code, or the text of an error."""
+    if str(STANDINS_FOLDER) not in sys.path:
+        sys.path.append(str(STANDINS_FOLDER))
     if "--use-python-default-buffering" not in arguments:
         sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
-    before = signal.signal(signal.SIGTERM, _terminate)
+    previous_handler = signal.signal(signal.SIGTERM, _terminate)
     try:
         run, args = parse(COMMANDS, arguments)
         return run(args)
@@ -78,27 +79,27 @@ def stand_in(arguments: Sequence[str]) -> ExitCode:
     except KeyboardInterrupt:
         return int(signal.SIGINT)
     finally:
-        signal.signal(signal.SIGTERM, before)
+        signal.signal(signal.SIGTERM, previous_handler)
 
 
 def run() -> NoReturn:
     """Run `ros2` and end this process with its exit code.
 
-    Python's finalization is left out: under load it can wait for ever for a thread of Fast DDS after all was printed.
+    Python's finalization is skipped, because it can wait forever for a thread of Fast DDS on a busy machine.
     """
     try:
         outcome = main()
-    except SystemExit as ended:
-        outcome = ended.code
+    except SystemExit as error:
+        outcome = error.code
     if isinstance(outcome, str):
         print(outcome, file=sys.stderr)
         outcome = 1
     for stream in (sys.stdout, sys.stderr):
-        with contextlib.suppress(OSError):  # nobody reads it
+        with contextlib.suppress(OSError):  # the reader may have closed the pipe
             stream.flush()
     os._exit(outcome or 0)
 
 
 def _terminate(signum: int, _: object) -> NoReturn:
-    """Leave through the `finally` clauses, so that nodes and children end with us."""
+    """Exit through the `finally` clauses, so that nodes and child processes are shut down."""
     raise SystemExit(signum)

@@ -12,7 +12,7 @@ from rclpy.action import (
 
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.parsing import ExitCode, Verb
-from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
+from autograder.ros.ros2.session import LOOKUP_QUIET, Session, add_session_arguments, open_session
 
 
 def _list_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,29 +44,31 @@ def _info_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _info(args: argparse.Namespace) -> ExitCode:
     with open_session(args) as session:
-        wanted = graph.find_node(session, args.node_name)
-        if wanted is None or wanted.full_name != args.node_name:  # it takes full names alone, as the real command
+        node = graph.find_node(session, args.node_name)
+        if node is None or node.full_name != args.node_name:  # as in the real command, only full names are accepted
             return f"Unable to find node '{args.node_name}'"
-        session.settle(longest=NAMED_QUIET)
-        same = graph.node_names(session, include_hidden=True).count(wanted)
-        if same > 1:
+        session.settle(max_quiet=LOOKUP_QUIET)
+        count = graph.node_names(session, include_hidden=True).count(node)
+        if count > 1:
             print(
-                f'There are {same} nodes in the graph with the exact name "{wanted.full_name}". '
+                f'There are {count} nodes in the graph with the exact name "{node.full_name}". '
                 "You are seeing information about only one of them.",
                 file=sys.stderr,
             )
-        print(wanted.full_name)
-        for heading, names_and_types in _sections(session, wanted, args.include_hidden):
+        print(node.full_name)
+        for heading, names_and_types in _sections(session, node, args.include_hidden):
             print(f"  {heading}:")
-            # One blank line closes an empty section of services and actions, as in the real command.
+            # An empty section consists of one blank line, as in the real command.
             print(*(f"    {name}: {', '.join(types)}" for name, types in names_and_types), sep="\n")
     return None
 
 
-def _sections(session: Session, wanted: graph.NodeName, hidden: bool) -> list[tuple[str, graph.NamesAndTypes]]:
+def _sections(
+    session: Session, described_node: graph.NodeName, include_hidden: bool
+) -> list[tuple[str, graph.NamesAndTypes]]:
     node = session.node
-    name, namespace = wanted.name, wanted.namespace
-    found: list[tuple[str, graph.NamesAndTypes]] = [
+    name, namespace = described_node.name, described_node.namespace
+    sections: list[tuple[str, graph.NamesAndTypes]] = [
         ("Subscribers", node.get_subscriber_names_and_types_by_node(name, namespace)),
         ("Publishers", node.get_publisher_names_and_types_by_node(name, namespace)),
         ("Service Servers", node.get_service_names_and_types_by_node(name, namespace)),
@@ -75,8 +77,8 @@ def _sections(session: Session, wanted: graph.NodeName, hidden: bool) -> list[tu
         ("Action Clients", get_action_client_names_and_types_by_node(node, name, namespace)),
     ]
     return [
-        (heading, sorted(pair for pair in pairs if hidden or not graph.has_hidden_part(pair[0])))
-        for heading, pairs in found
+        (heading, sorted(pair for pair in pairs if include_hidden or not graph.has_hidden_part(pair[0])))
+        for heading, pairs in sections
     ]
 
 

@@ -1,4 +1,4 @@
-"""Installed packages and their executables, by the ament index."""
+"""Finds installed packages and their executables in the ament index."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`ros2 param`: list, get, set, describe, dump and load, by a node's parameter services."""
+"""`ros2 param`: list, get, set, describe, dump and load, which call a node's parameter services."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ _TYPES = {
 
 
 @contextmanager
-def _parameters(args: argparse.Namespace) -> Iterator[NodeParameters]:
+def _open_parameters(args: argparse.Namespace) -> Iterator[NodeParameters]:
     with open_session(args) as session:
         timeout = getattr(args, "timeout", None)
-        found = graph.find_node(session, args.node_name, include_hidden=args.include_hidden_nodes, timeout=timeout)
-        if found is None:
+        node = graph.find_node(session, args.node_name, include_hidden=args.include_hidden_nodes, timeout=timeout)
+        if node is None:
             raise Ros2Error("Node not found")
-        yield NodeParameters(session, found.full_name)
+        yield NodeParameters(session, node.full_name)
 
 
 def _node_arguments(parser: argparse.ArgumentParser) -> None:
@@ -71,7 +71,7 @@ def _pattern(text: str) -> re.Pattern[str]:
 
 def _list(args: argparse.Namespace) -> ExitCode:
     if args.node_name:
-        with _parameters(args) as parameters:
+        with _open_parameters(args) as parameters:
             _print_names(parameters, args)
         return None
     with open_session(args) as session:
@@ -103,17 +103,17 @@ def _get_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _get(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         values = parameters.values([args.parameter_name])
     if not values:
         return "Parameter not set"
-    found = values[0]
-    if found.type == ParameterType.PARAMETER_NOT_SET:
+    message = values[0]
+    if message.type == ParameterType.PARAMETER_NOT_SET:
         print("Parameter not set.")
         return None
-    kind = _TYPES[found.type]
+    kind = _TYPES[message.type]
     label = f"{kind.removesuffix(' array').capitalize()} {'values are' if kind.endswith('array') else 'value is'}:"
-    value = parameter_value_to_python(found)
+    value = parameter_value_to_python(message)
     value = list(value) if hasattr(value, "typecode") else value
     print(value if args.hide_type else f"{label} {value}")
     return None
@@ -126,15 +126,15 @@ def _set_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _set(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         result = parameters.set(args.parameter_name, args.value)
-    return _report(result, "Set parameter successful", "Setting parameter failed")
+    return _print_result(result, "Set parameter successful", "Setting parameter failed")
 
 
-def _report(result: Any, done: str, failed: str) -> ExitCode:
-    """Say how a change went. The real command exits with 0 even when the node refused, so this one does."""
+def _print_result(result: Any, success: str, failure: str) -> ExitCode:
+    """Print the result of a change. As in the real command, the exit code is 0 even if the node rejected it."""
     reason = f": {result.reason}" if result.reason else ""
-    print(f"{done if result.successful else failed}{reason}", file=sys.stdout if result.successful else sys.stderr)
+    print(f"{success if result.successful else failure}{reason}", file=sys.stdout if result.successful else sys.stderr)
     return None
 
 
@@ -144,7 +144,7 @@ def _describe_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _describe(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         for descriptor in parameters.descriptors(args.parameter_names):
             print(*describe(descriptor), sep="\n")
     return None
@@ -169,7 +169,7 @@ def describe(descriptor: ParameterDescriptor) -> Iterator[str]:
 
 
 def _dump(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         names = parameters.names([])
         values = [parameter_value_to_python(value) for value in parameters.values(names)]
     plain = [list(value) if hasattr(value, "typecode") else value for value in values]
@@ -186,9 +186,9 @@ def _load_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _load(args: argparse.Namespace) -> ExitCode:
-    with _parameters(args) as parameters:
+    with _open_parameters(args) as parameters:
         for name, result in parameters.load(Path(args.parameter_file), not args.no_use_wildcard):
-            _report(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
+            _print_result(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
     return None
 
 

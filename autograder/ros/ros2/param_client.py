@@ -1,4 +1,4 @@
-"""The parameters of a node: asking and changing them through its services, and reading parameter files."""
+"""Gets and sets a node's parameters through its services, and reads parameter files."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from rclpy.parameter_client import AsyncParameterClient
 from autograder.ros.ros2.exceptions import Ros2Error
 from autograder.ros.ros2.session import Session
 
-SERVICE_TIMEOUT = 5.0
+SERVICE_TIMEOUT = 5.0  # s; how long to wait until the node's services are ready
 
 
 class NodeParameters:
-    """The parameters of one node, through its services.
+    """A client of one node's parameter services.
 
-    Each method raises Ros2Error when the node does not answer.
+    Each method raises Ros2Error if the node does not respond.
     """
 
     def __init__(self, session: Session, node_name: str) -> None:
@@ -30,38 +30,40 @@ class NodeParameters:
             raise Ros2Error("Wait for service timed out")
 
     def names(self, prefixes: list[str]) -> list[str]:
-        """Return the names of all parameters, or of those under the prefixes, sorted."""
-        return sorted(self._answer(self._client.list_parameters(prefixes, None)).result.names)
+        """Return the sorted names of all parameters, or of those that begin with one of the prefixes."""
+        return sorted(self._wait_for(self._client.list_parameters(prefixes, None)).result.names)
 
     def values(self, names: list[str]) -> list[Any]:
-        """Return a ParameterValue for each name; none at all if one of them is not declared."""
-        return list(self._answer(self._client.get_parameters(names)).values)
+        """Return a ParameterValue for each name, or an empty list if one of them is not declared."""
+        return list(self._wait_for(self._client.get_parameters(names)).values)
 
     def descriptors(self, names: list[str]) -> list[ParameterDescriptor]:
-        """Return the descriptors; none at all if one of the names is not declared."""
-        return list(self._answer(self._client.describe_parameters(names)).descriptors)
+        """Return a descriptor for each name, or an empty list if one of them is not declared."""
+        return list(self._wait_for(self._client.describe_parameters(names)).descriptors)
 
     def set(self, name: str, text: str) -> Any:
-        """Set a parameter to a value given as YAML text; return the SetParametersResult."""
+        """Set a parameter to a value, which is given as YAML text, and return the SetParametersResult."""
         parameter = Parameter.from_parameter_msg(ParameterMessage(name=name, value=get_parameter_value(text)))
-        return self._answer(self._client.set_parameters([parameter])).results[0]
+        return self._wait_for(self._client.set_parameters([parameter])).results[0]
 
     def load(self, path: Path, use_wildcard: bool) -> list[tuple[str, Any]]:
-        """Set what a parameter file has for this node; return each name and its SetParametersResult."""
-        sent = parameters_in_file(path, self._client.remote_node_name, use_wildcard)
-        parameters = [Parameter.from_parameter_msg(message) for message in sent.values()]
-        return list(zip(sent, self._answer(self._client.set_parameters(parameters)).results, strict=True))
+        """Set the parameters that a file contains for this node. Return each name with its SetParametersResult."""
+        messages = parameters_in_file(path, self._client.remote_node_name, use_wildcard)
+        parameters = [Parameter.from_parameter_msg(message) for message in messages.values()]
+        return list(zip(messages, self._wait_for(self._client.set_parameters(parameters)).results, strict=True))
 
-    def _answer(self, future: Any) -> Any:
+    def _wait_for(self, future: Any) -> Any:
         self._session.spin_until(future)
         return future.result()
 
 
 def parameters_in_file(path: Path, node_name: str, use_wildcard: bool) -> dict[str, Any]:
-    """Read what a YAML parameter file has for a node, as messages by name; `/**` comes first, so the node's own win.
+    """Read the parameters that a YAML parameter file contains for a node, as messages by name.
+
+    The node's own parameters override those of `/**`.
 
     Raises:
-        Ros2Error: the file is missing, is no parameter file, or has nothing for this node.
+        Ros2Error: the file is missing, is not a parameter file, or has no parameters for this node.
     """
     try:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -76,13 +78,13 @@ def parameters_in_file(path: Path, node_name: str, use_wildcard: bool) -> dict[s
         raise Ros2Error(
             f"Param file does not contain parameters for {node_name}, only for nodes: {', '.join(map(str, content))}"
         )
-    merged: dict[str, Any] = {}
+    merged_values: dict[str, Any] = {}
     for key in keys:
         section = content[key]
         if not isinstance(section, dict) or not isinstance(section.get("ros__parameters"), dict):
             raise Ros2Error(f"{path} is not a ROS parameter file: {key} has no mapping named ros__parameters")
-        merged |= _flat(section["ros__parameters"])
-    return {name: Parameter(name, value=value).to_parameter_msg() for name, value in merged.items()}
+        merged_values |= _flatten(section["ros__parameters"])
+    return {name: Parameter(name, value=value).to_parameter_msg() for name, value in merged_values.items()}
 
 
 def nested(values: dict[str, Any]) -> dict[str, Any]:
@@ -97,8 +99,8 @@ def nested(values: dict[str, Any]) -> dict[str, Any]:
     return tree
 
 
-def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+def _flatten(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for key, value in values.items():
-        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+        flat |= _flatten(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
     return flat

@@ -1,6 +1,6 @@
-"""What a command and a verb are, and the parsers built from them.
+"""Commands and their verbs, and the argument parsers that are built from them.
 
-Only the parser of the verb that was asked for is filled in, so `ros2 pkg list` never imports rclpy.
+Only the parser of the requested verb gets its arguments, so `ros2 pkg list` never imports rclpy.
 """
 
 from __future__ import annotations
@@ -10,23 +10,23 @@ import importlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from autograder.ros.ros2.exceptions import HOW_TO_GET_THE_REAL_ONE, NotCoveredError
+from autograder.ros.ros2.exceptions import INSTALL_HINT, NotCoveredError
 
-STAND_IN_NOTE = f"This is a stand-in for ros2cli, without a daemon. The real one: {HOW_TO_GET_THE_REAL_ONE}."
+STAND_IN_NOTE = f"This is a stand-in for ros2cli, without a daemon. The real one: {INSTALL_HINT}."
 
-# What a verb returns: nothing or 0 for success, another exit code, or a text for stderr (exit code 1).
+# The return value of a verb: None or 0 for success, another exit code, or a text for stderr (exit code 1).
 ExitCode = int | str | None
 
 
 @dataclass(frozen=True)
 class Verb:
-    """One thing that a command does.
+    """A verb of a command, such as `list` in `ros2 topic list`.
 
     Attributes:
-        name: as typed, such as `list`.
+        name: the word that the user types.
         summary: one sentence for `--help`.
-        add_arguments: fills in the verb's parser.
-        run: does it, given the parsed arguments.
+        add_arguments: a function that adds the verb's arguments to its parser.
+        run: a function that runs the verb with the parsed arguments.
     """
 
     name: str
@@ -37,12 +37,12 @@ class Verb:
 
 @dataclass(frozen=True)
 class Command:
-    """A first word after `ros2`.
+    """A command, such as `topic` in `ros2 topic`.
 
     Attributes:
         summary: one sentence for `--help`.
-        module: where its `VERBS` (or, without verbs, its `VERB`) are; `None` for a command that is not covered.
-        not_covered: verbs of the real command that this one lacks.
+        module: the module that defines `VERBS`, or `VERB` if the command has no verbs; `None` if it is not covered.
+        not_covered: the verbs that only the real command has.
     """
 
     summary: str
@@ -50,10 +50,10 @@ class Command:
     not_covered: tuple[str, ...] = ()
 
     def load(self) -> tuple[Verb, ...] | Verb:
-        """Import the verbs of a covered command, or its one verb if it has no further word."""
+        """Import the `VERBS` or the `VERB` of a covered command."""
         module = importlib.import_module(f"autograder.ros.ros2.{self.module}")
-        found: tuple[Verb, ...] | Verb = module.VERBS if hasattr(module, "VERBS") else module.VERB
-        return found
+        verbs: tuple[Verb, ...] | Verb = module.VERBS if hasattr(module, "VERBS") else module.VERB
+        return verbs
 
 
 def parse(
@@ -62,11 +62,11 @@ def parse(
     """Parse a whole command line.
 
     Returns:
-        What to run, and the parsed arguments to run it with.
+        The function to run, and the parsed arguments to call it with.
 
     Raises:
         NotCoveredError: the command or verb exists only in the real `ros2`.
-        SystemExit: help was asked for, or the arguments are wrong (as argparse does it).
+        SystemExit: raised by argparse, if help was requested or the arguments are not valid.
     """
     top = _parser("ros2", "ros2 is an extensible command-line tool for ROS 2.")
     top.add_argument(
@@ -76,16 +76,16 @@ def parse(
     )
     words = [word for word in argv if not word.startswith("-")]
     name = words[0] if words else None
-    children = top.add_subparsers(
+    subparsers = top.add_subparsers(
         title="Commands", metavar="Call `ros2 <command> -h` for more detailed usage.", dest="command"
     )
-    for known, command in commands.items():
+    for command_name, command in commands.items():
         if command.module is not None:
-            child = children.add_parser(known, help=command.summary, prog=f"ros2 {known}")
-            child.set_defaults(run=lambda _: None)
+            subparser = subparsers.add_parser(command_name, help=command.summary, prog=f"ros2 {command_name}")
+            subparser.set_defaults(run=lambda _: None)
     if name in commands:
-        # Filled in now that it is known which one; the placeholder made for the list of commands gives way.
-        children.choices[name] = _command_parser(name, commands[name], words)
+        # The complete parser replaces the placeholder, which was created for the list of commands.
+        subparsers.choices[name] = _command_parser(name, commands[name], words)
     args = top.parse_args(argv)
     if args.command is None:
         top.print_help()
@@ -102,14 +102,14 @@ def _command_parser(name: str, command: Command, words: Sequence[str]) -> argpar
         verbs.add_arguments(parser)
         parser.set_defaults(run=verbs.run)
         return parser
-    asked = words[1] if len(words) > 1 else None
-    if asked in command.not_covered:
-        raise NotCoveredError(f"`ros2 {name} {asked}`")
-    children = parser.add_subparsers(
+    verb_name = words[1] if len(words) > 1 else None
+    if verb_name in command.not_covered:
+        raise NotCoveredError(f"`ros2 {name} {verb_name}`")
+    subparsers = parser.add_subparsers(
         title="Verbs", metavar=f"Call `ros2 {name} <verb> -h` for more detailed usage.", dest="verb"
     )
     for verb in verbs:
-        child = children.add_parser(
+        subparser = subparsers.add_parser(
             verb.name,
             help=verb.summary,
             description=verb.summary,
@@ -117,9 +117,9 @@ def _command_parser(name: str, command: Command, words: Sequence[str]) -> argpar
             prog=f"ros2 {name} {verb.name}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        child.set_defaults(run=verb.run)
-        if verb.name == asked:
-            verb.add_arguments(child)
+        subparser.set_defaults(run=verb.run)
+        if verb.name == verb_name:
+            verb.add_arguments(subparser)
 
     def show_help(_: argparse.Namespace) -> int:
         parser.print_help()
@@ -139,17 +139,17 @@ def _parser(prog: str, description: str) -> argparse.ArgumentParser:
 
 
 def positive_int(text: str) -> int:
-    """Parse an argument that has to be a whole number above 0."""
-    return _whole(text, 1, "positive")
+    """Parse an argument that must be an integer above 0."""
+    return _integer(text, 1, "positive")
 
 
 def unsigned_int(text: str) -> int:
-    """Parse an argument that has to be a whole number, 0 included."""
-    return _whole(text, 0, "non-negative")
+    """Parse an argument that must be an integer of at least 0."""
+    return _integer(text, 0, "non-negative")
 
 
 def positive_float(text: str) -> float:
-    """Parse an argument that has to be a finite number above 0."""
+    """Parse an argument that must be a finite number above 0."""
     try:
         value = float(text)
     except ValueError:
@@ -159,11 +159,11 @@ def positive_float(text: str) -> float:
     return value
 
 
-def _whole(text: str, least: int, kind: str) -> int:
+def _integer(text: str, minimum: int, kind: str) -> int:
     try:
         value = int(text)
     except ValueError:
-        value = least - 1
-    if value < least:
+        value = minimum - 1
+    if value < minimum:
         raise argparse.ArgumentTypeError(f"value must be a {kind} integer")
     return value

@@ -1,4 +1,4 @@
-"""`ros2 pkg`: list, prefix and executables; create has a module of its own."""
+"""`ros2 pkg`: list, prefix and executables. `pkg_create` implements create."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from autograder.ros.ros2.parsing import ExitCode, Verb
 
 
 def _no_arguments(parser: argparse.ArgumentParser) -> None:
-    """Take none."""
+    """Add no arguments."""
 
 
 def _list(args: argparse.Namespace) -> ExitCode:
@@ -48,7 +48,7 @@ def _prefix_or_error(package: str) -> Path:
     try:
         return packages.prefix_of(package)
     except Ros2Error:
-        # The text of these verbs; `ros2 run` names the package.
+        # Unlike `ros2 run`, the verbs of `ros2 pkg` do not name the package.
         raise Ros2Error("Package not found") from None
 
 

@@ -60,19 +60,19 @@ def run(args: argparse.Namespace) -> ExitCode:
     if args.license == "?":
         print("Supported licenses:", *LICENCE_TEXTS, sep="\n")
         return None
-    spec = _spec(args)
+    spec = _read_spec(args)
     folder = Path(args.destination_directory) / spec.name
     if folder.exists():
         return (
-            f"\nAborted!\nThe directory already exists: {_shown(folder)}\n"
+            f"\nAborted!\nThe directory already exists: {_printable(folder)}\n"
             "Either remove the directory or choose a different destination directory or package name"
         )
     _describe(spec, Path(args.destination_directory))
     licence = templates.licence_text(spec.licence, spec.maintainer_name, date.today().year)
-    made: set[Path] = set()
+    created_folders: set[Path] = set()
     try:
         for relative, text in files(spec, licence):
-            _write(folder, relative, text, made)
+            _write(folder, relative, text, created_folders)
             if relative == MANIFEST:
                 print("creating source folder" if _is_python(spec) else "creating source and include folder")
     except OSError as error:
@@ -89,7 +89,7 @@ def run(args: argparse.Namespace) -> ExitCode:
 def files(spec: PackageSpec, licence: str | None) -> Iterator[tuple[str, str]]:
     """Yield the path and the text of each file of a package, in the real command's order.
 
-    A path that ends in a slash is a folder.
+    A path that ends with a slash is a folder.
     """
     yield MANIFEST, templates.package_xml(spec)
     yield from _python_files(spec) if _is_python(spec) else _cmake_files(spec)
@@ -121,12 +121,12 @@ def _is_python(spec: PackageSpec) -> bool:
     return spec.build_type == "ament_python"
 
 
-def _spec(args: argparse.Namespace) -> PackageSpec:
-    """Check the arguments and complete them with what the machine knows of the user.
+def _read_spec(args: argparse.Namespace) -> PackageSpec:
+    """Validate the arguments. If they lack an e-mail address, take the one in git's configuration.
 
     Raises:
-        Ros2Error: a name cannot be one of a package, module or target.
-        NotCoveredError: the build type is not covered, or a C++ executable or library is asked for.
+        Ros2Error: a name is not valid for a package, node or library.
+        NotCoveredError: the build type is not covered, or a C++ executable or library was requested.
     """
     if args.build_type == "cmake":
         raise NotCoveredError("`ros2 pkg create --build-type cmake`")
@@ -162,12 +162,12 @@ def _spec(args: argparse.Namespace) -> PackageSpec:
 
 
 def _git_email() -> str:
-    """Return the e-mail address that the user gave to git, or an empty text."""
+    """Return the e-mail address in git's global configuration, or an empty string."""
     git = shutil.which("git")
     if git is None:
         return ""
-    answer = subprocess.run([git, "config", "--global", "user.email"], capture_output=True, text=True, check=False)
-    return answer.stdout.strip()
+    result = subprocess.run([git, "config", "--global", "user.email"], capture_output=True, text=True, check=False)
+    return result.stdout.strip()
 
 
 def _describe(spec: PackageSpec, destination: Path) -> None:
@@ -187,21 +187,21 @@ def _describe(spec: PackageSpec, destination: Path) -> None:
         print("library_name:", spec.library_name)
 
 
-def _write(folder: Path, relative: str, text: str, made: set[Path]) -> None:
-    """Write a file and the folder above it, telling of both as the real command does."""
+def _write(folder: Path, relative: str, text: str, created_folders: set[Path]) -> None:
+    """Write a file and its folder, and print both as the real command does."""
     path = folder / relative
     is_folder = relative.endswith("/")
     parent = path if is_folder else path.parent
-    if parent not in made:
-        print(f"creating folder {_shown(parent)}")
+    if parent not in created_folders:
+        print(f"creating folder {_printable(parent)}")
         parent.mkdir(parents=True)
-        made.add(parent)
+        created_folders.add(parent)
     if not is_folder:
         if relative != LICENCE:
-            print(f"creating {_shown(path)}")
+            print(f"creating {_printable(path)}")
         path.write_text(text, encoding="utf-8")
 
 
-def _shown(path: Path) -> str:
-    """Return a path as it is printed: below the current directory it begins with `./`."""
+def _printable(path: Path) -> str:
+    """Return the path as the real command prints it: below the current directory, it begins with `./`."""
     return str(path) if path.is_absolute() or path.parts[:1] == ("..",) else f"./{path}"

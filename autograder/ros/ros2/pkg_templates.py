@@ -1,6 +1,6 @@
-"""The files of a new package, as text; nothing here touches the disk.
+"""Templates for the files of a new package. This module does not write files.
 
-The fields and what they mean are those of Jazzy's `ros2 pkg create`; the wording is our own.
+The fields and their meanings are those of Jazzy's `ros2 pkg create`, but the wording differs.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 LICENCES = Path(__file__).parent / "licences"
 
-# Jazzy's identifiers, in the order in which it lists them. BSD-2.0 is its older name of the three-clause licence.
+# The identifiers of Jazzy's `ros2 pkg create`, in its order. BSD-2.0 is its older name for the three-clause licence.
 LICENCE_TEXTS = {
     "Apache-2.0": "Apache-2.0",
     "BSL-1.0": "BSL-1.0",
@@ -27,17 +27,17 @@ LICENCE_TEXTS = {
 
 @dataclass(frozen=True)
 class PackageSpec:
-    """What the user wants to have in a new package.
+    """The options for a new package.
 
     Attributes:
         name: the package's name.
         build_type: `ament_python` or `ament_cmake`.
-        package_format: of package.xml, 2 or 3.
-        description, licence: for package.xml and setup.py.
-        maintainer_name, maintainer_email: likewise.
-        dependencies: names of packages to depend on.
-        node_name: an executable to begin with, of `ament_python` only, or `None`.
-        library_name: a library to begin with, of `ament_python` only, or `None`.
+        package_format: the format of package.xml, 2 or 3.
+        description, licence: entries of package.xml and setup.py.
+        maintainer_name, maintainer_email: entries of package.xml and setup.py.
+        dependencies: the names of the packages on which it depends.
+        node_name: the executable to create, or `None`; only for `ament_python`.
+        library_name: the library to create, or `None`; only for `ament_python`.
     """
 
     name: str
@@ -53,7 +53,7 @@ class PackageSpec:
 
 
 def licence_text(identifier: str, holder: str, year: int) -> str | None:
-    """Return the text for the LICENSE file, or `None` for a licence that is not known."""
+    """Return the text of the LICENSE file, or `None` for an unknown licence."""
     file = LICENCE_TEXTS.get(identifier)
     if file is None:
         return None
@@ -62,7 +62,7 @@ def licence_text(identifier: str, holder: str, year: int) -> str | None:
 
 
 def package_xml(spec: PackageSpec) -> str:
-    """Return the manifest."""
+    """Return the manifest, package.xml."""
     if spec.build_type == "ament_python":
         tools, tests = [], ["ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest"]
     else:
@@ -104,10 +104,10 @@ setup(
     ],
     install_requires=['setuptools'],
     zip_safe=True,
-    maintainer={_quoted(spec.maintainer_name)},
-    maintainer_email={_quoted(spec.maintainer_email)},
-    description={_quoted(spec.description)},
-    license={_quoted(spec.licence)},
+    maintainer={_quote(spec.maintainer_name)},
+    maintainer_email={_quote(spec.maintainer_email)},
+    description={_quote(spec.description)},
+    license={_quote(spec.licence)},
     tests_require=['pytest'],
     entry_points={{
         'console_scripts': [
@@ -118,7 +118,7 @@ setup(
 
 
 def setup_cfg(spec: PackageSpec) -> str:
-    """Return setup.cfg of an ament_python package: executables go where `ros2 run` and launch files look."""
+    """Return setup.cfg of an ament_python package, which installs executables where `ros2 run` looks for them."""
     return f"""[develop]
 script_dir=$base/lib/{spec.name}
 [install]
@@ -195,7 +195,7 @@ def test_pep257():
 }
 
 
-def _quoted(text: str) -> str:
-    """Return a Python literal in single quotes, as ROS's style wants it, whatever the text holds."""
+def _quote(text: str) -> str:
+    """Return a Python string literal in single quotes, as ROS's style requires."""
     literal = repr(text)
     return literal if literal[0] == "'" else "'" + literal[1:-1].replace("'", "\\'") + "'"

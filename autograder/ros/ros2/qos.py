@@ -1,4 +1,4 @@
-"""The QoS options of `topic pub`, `topic echo`, and what they amount to."""
+"""The QoS options of `topic pub` and `topic echo`, and the profiles that they select."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _POLICIES = {
 
 
 def add_qos_arguments(parser: argparse.ArgumentParser, entity: str, default: str) -> None:
-    """Add the QoS options for an `entity` ("subscribe" or "publish") with the preset profile `default`."""
+    """Add the QoS options. `entity` is "subscribe" or "publish", and `default` is the default preset profile."""
     parser.add_argument(
         "--qos-profile",
         choices=QoSPresetProfiles.short_keys(),
@@ -47,7 +47,7 @@ def add_qos_arguments(parser: argparse.ArgumentParser, entity: str, default: str
 
 
 def chosen_profile(args: argparse.Namespace) -> QoSProfile:
-    """Return the preset profile with the settings that the user changed."""
+    """Return the preset profile that the user chose, changed by the user's other options."""
     profile: QoSProfile = copy.copy(QoSPresetProfiles.get_from_short_key(args.qos_profile))
     if args.qos_depth is not None:
         profile.depth = args.qos_depth
@@ -60,23 +60,23 @@ def chosen_profile(args: argparse.Namespace) -> QoSProfile:
     return profile
 
 
-def profile_to_listen_with(node: Node, topic: str, args: argparse.Namespace) -> QoSProfile:
-    """Return the user's profile, or if no policy was given one that connects to every publisher there is."""
+def subscription_profile(node: Node, topic: str, args: argparse.Namespace) -> QoSProfile:
+    """Return the user's profile. If it was not changed, return one that is compatible with every publisher."""
     profile = chosen_profile(args)
     names = ("depth", *_POLICIES, "liveliness_lease_duration_seconds")
     publishers = node.get_publishers_info_by_topic(topic)
     if not publishers or any(getattr(args, f"qos_{name}") is not None for name in names):
         return profile
-    offered = [info.qos_profile for info in publishers]
-    reliable = [qos.reliability == QoSReliabilityPolicy.RELIABLE for qos in offered]
-    durable = [qos.durability == QoSDurabilityPolicy.TRANSIENT_LOCAL for qos in offered]
-    profile.reliability = QoSReliabilityPolicy.RELIABLE if all(reliable) else QoSReliabilityPolicy.BEST_EFFORT
-    profile.durability = QoSDurabilityPolicy.TRANSIENT_LOCAL if all(durable) else QoSDurabilityPolicy.VOLATILE
-    for having, best, fallback in (
-        (reliable, "QoSReliabilityPolicy.RELIABLE", "QoSReliabilityPolicy.BEST_EFFORT"),
-        (durable, "QoSDurabilityPolicy.TRANSIENT_LOCAL", "QoSDurabilityPolicy.VOLATILE"),
+    offered_profiles = [info.qos_profile for info in publishers]
+    reliable_flags = [qos.reliability == QoSReliabilityPolicy.RELIABLE for qos in offered_profiles]
+    durable_flags = [qos.durability == QoSDurabilityPolicy.TRANSIENT_LOCAL for qos in offered_profiles]
+    profile.reliability = QoSReliabilityPolicy.RELIABLE if all(reliable_flags) else QoSReliabilityPolicy.BEST_EFFORT
+    profile.durability = QoSDurabilityPolicy.TRANSIENT_LOCAL if all(durable_flags) else QoSDurabilityPolicy.VOLATILE
+    for flags, best, fallback in (
+        (reliable_flags, "QoSReliabilityPolicy.RELIABLE", "QoSReliabilityPolicy.BEST_EFFORT"),
+        (durable_flags, "QoSDurabilityPolicy.TRANSIENT_LOCAL", "QoSDurabilityPolicy.VOLATILE"),
     ):
-        if any(having) and not all(having):
+        if any(flags) and not all(flags):
             print(
                 f"Some, but not all, publishers are offering {best}. "
                 f"Falling back to {fallback} as it will connect to all publishers"

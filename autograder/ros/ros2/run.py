@@ -1,4 +1,4 @@
-"""`ros2 run`: start an executable of a package and end with its exit code."""
+"""`ros2 run`: runs an executable of a package and exits with its exit code."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _run(args: argparse.Namespace) -> ExitCode:
         child = subprocess.Popen(command)
     except OSError as error:
         return f"Cannot start {shlex.join(command)}: {error}"
-    with _signals_go_to(child):
+    with _forward_signals(child):
         code = child.wait()
     if code < 0:
         print(f"[ros2run]: {signal.strsignal(-code)}")
@@ -45,19 +45,19 @@ def _run(args: argparse.Namespace) -> ExitCode:
 
 
 @contextmanager
-def _signals_go_to(child: subprocess.Popen[bytes]) -> Iterator[None]:
-    """Let the child decide what Ctrl-C and SIGTERM mean, and outlive it only to report its exit code.
+def _forward_signals(child: subprocess.Popen[bytes]) -> Iterator[None]:
+    """Ignore SIGINT and forward SIGTERM to the child, so that this process outlives it and returns its exit code.
 
-    A terminal sends Ctrl-C to both; a SIGTERM to this process alone would leave the child behind.
+    A terminal sends Ctrl-C to both processes, but SIGTERM may be sent to this process alone.
     """
-    before = {
+    previous_handlers = {
         signal.SIGINT: signal.signal(signal.SIGINT, lambda *_: None),
         signal.SIGTERM: signal.signal(signal.SIGTERM, lambda *_: child.terminate()),
     }
     try:
         yield
     finally:
-        for number, handler in before.items():
+        for number, handler in previous_handlers.items():
             signal.signal(number, handler)
 
 

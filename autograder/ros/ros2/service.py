@@ -6,9 +6,9 @@ import argparse
 import time
 
 from autograder.ros.ros2 import graph
-from autograder.ros.ros2.filling import add_values, filled, given_values
+from autograder.ros.ros2.message_values import add_values_argument, make_message, read_values
 from autograder.ros.ros2.parsing import ExitCode, Verb, positive_float
-from autograder.ros.ros2.session import NAMED_QUIET, add_session_arguments, open_session
+from autograder.ros.ros2.session import LOOKUP_QUIET, add_session_arguments, open_session
 
 
 def _list_arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,7 +42,7 @@ def _info(args: argparse.Namespace) -> ExitCode:
         types = graph.types_of_service(session, args.service_name)
         if not types:
             return f"Unknown service '{args.service_name}'"
-        session.settle(longest=NAMED_QUIET)
+        session.settle(max_quiet=LOOKUP_QUIET)
         print(f"Type: {types[0] if len(types) == 1 else types}")
         print(f"Clients count: {session.node.count_clients(args.service_name)}")
         print(f"Services count: {session.node.count_services(args.service_name)}")
@@ -53,7 +53,7 @@ def _call_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument("service_name", help="Name of the ROS service to call to (e.g. '/add_two_ints')")
     parser.add_argument("service_type", help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')")
-    add_values(
+    add_values_argument(
         parser,
         "values",
         "Values to fill the service request with in YAML format (e.g. '{data: true}'), "
@@ -66,22 +66,22 @@ def _call_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _call(args: argparse.Namespace) -> ExitCode:
     service_class = graph.load_class(args.service_type, "srv")
-    request, _ = filled(service_class.Request, given_values(args, "values"), "field", stamps=False)
+    request, _ = make_message(service_class.Request, read_values(args, "values"), "field", allow_stamps=False)
     with open_session(args) as session:
         client = session.node.create_client(service_class, args.service_name)
         if not client.service_is_ready():
             print("waiting for service to become available...")
             session.wait_for(client.service_is_ready, timeout=float("inf"))
         while True:
-            started = time.monotonic()
+            start = time.monotonic()
             print(f"requester: making request: {request!r}\n")
             future = client.call_async(request)
             session.spin_until(future)
-            # `result` raises what went wrong with the call, if anything did.
+            # `result` raises the exception of a failed call.
             print(f"response:\n{future.result()!r}\n")
             if args.rate is None:
                 return None
-            session.wait_for(lambda: False, timeout=max(0.0, started + 1 / args.rate - time.monotonic()))
+            session.wait_for(lambda: False, timeout=max(0.0, start + 1 / args.rate - time.monotonic()))
 
 
 def _hidden_argument(parser: argparse.ArgumentParser) -> None:

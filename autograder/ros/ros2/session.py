@@ -1,7 +1,7 @@
-"""The node through which a verb looks at the graph, and waiting for the graph to show something.
+"""The node with which a verb queries the graph, and functions that wait for changes of the graph.
 
-Nothing here sleeps: waiting is spinning until a condition holds or a deadline passes, in steps short enough for
-Ctrl-C to be heard.
+These functions do not sleep. They spin the node until a condition holds or a deadline passes, in steps that are short
+enough to react to Ctrl-C.
 """
 
 from __future__ import annotations
@@ -25,34 +25,33 @@ from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.validate_node_name import validate_node_name
 
-from autograder.ros.discovery import announcing_often
+from autograder.ros.discovery import fast_discovery
 from autograder.ros.ros2.exceptions import Ros2Error
 
 NODE_NAME_PREFIX = "_ros2cli"
-# Beyond it, DDS runs out of ports.
-LAST_DOMAIN = 232
+LAST_DOMAIN = 232  # in a higher domain, DDS's port numbers would not be valid
 
-# Seconds without a change after which the graph counts as discovered, the least that is waited, the least before it
-# counts as empty, and the most to wait for all.
+# The graph counts as discovered if it has not changed for QUIET seconds. Discovery takes at least MIN_SETTLING seconds,
+# or MIN_SETTLING_ALONE while no other node is known, and at most MAX_SETTLING.
 QUIET = 0.5
-LEAST = 1.0
-EMPTY = 3.0
-LONGEST_SETTLING = 5.0
-# Seconds to wait for something that was named, such as a node; once that is there, the rest of what belongs to it
-# follows soon, however long `--spin-time` is.
-NAMED = 3.0
-NAMED_QUIET = 2.0
-_STEP = 0.05
+MIN_SETTLING = 1.0
+MIN_SETTLING_ALONE = 3.0
+MAX_SETTLING = 5.0
+# How many seconds to wait until a named node, topic or service appears. Its details are discovered soon after that, so
+# LOOKUP_QUIET limits `--spin-time`.
+LOOKUP_TIMEOUT = 3.0
+LOOKUP_QUIET = 2.0
+_STEP = 0.05  # s; how long the node is spun before a condition is tested again
 
 
 @dataclass(frozen=True)
 class Session:
-    """A node of our own and the executor that spins it.
+    """The command's node and the executor that spins it.
 
     Attributes:
-        node: hidden, as its name begins with an underscore.
-        executor: spins the node, on this thread.
-        spin_time: what `--spin-time` said, in seconds.
+        node: a hidden node, that is, one whose name begins with an underscore.
+        executor: the executor that spins the node in this thread.
+        spin_time: the value of `--spin-time` in seconds, or `None`.
     """
 
     node: Node
@@ -60,31 +59,31 @@ class Session:
     spin_time: float | None
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Spin until `condition` holds; return whether it did before `timeout` (`--spin-time`, or 3 s)."""
-        limit = timeout if timeout is not None else NAMED if self.spin_time is None else self.spin_time
+        """Spin until `condition` holds, for at most `timeout` (`--spin-time`, or 3 s). Return whether it holds."""
+        limit = timeout if timeout is not None else LOOKUP_TIMEOUT if self.spin_time is None else self.spin_time
         deadline = time.monotonic() + limit
         while not condition():
-            left = deadline - time.monotonic()
-            if left <= 0:
+            remaining_seconds = deadline - time.monotonic()
+            if remaining_seconds <= 0:
                 return False
-            self._spin_once(min(_STEP, left))
+            self._spin_once(min(_STEP, remaining_seconds))
         return True
 
-    def settle(self, *, longest: float = math.inf) -> None:
-        """Spin until the graph has not changed for `--spin-time` (0.5) seconds, or for `longest` if that is less."""
-        quiet = min(longest, QUIET if self.spin_time is None else self.spin_time)
-        last = self._graph()
-        changed = start = time.monotonic()
-        while (now := time.monotonic()) - start < self._least(longest) or (
-            now - changed < quiet and now - start < max(LONGEST_SETTLING, 2 * quiet)
+    def settle(self, *, max_quiet: float = math.inf) -> None:
+        """Spin until the graph has not changed for `--spin-time` (or 0.5 s), or for `max_quiet` if that is shorter."""
+        quiet = min(max_quiet, QUIET if self.spin_time is None else self.spin_time)
+        previous_graph = self._read_graph()
+        last_change = start = time.monotonic()
+        while (now := time.monotonic()) - start < self._min_settling(max_quiet) or (
+            now - last_change < quiet and now - start < max(MAX_SETTLING, 2 * quiet)
         ):
             self._spin_once(_STEP)
-            graph = self._graph()
-            if graph != last:
-                last, changed = graph, time.monotonic()
+            graph = self._read_graph()
+            if graph != previous_graph:
+                previous_graph, last_change = graph, time.monotonic()
 
     def spin_until(self, future: Any, timeout: float | None = None) -> bool:
-        """Spin until a future is done; return whether it is, after at most `timeout` seconds (none: for ever)."""
+        """Spin until a future is done, for at most `timeout` seconds if given; return whether it is done."""
         return self.wait_for(future.done, math.inf if timeout is None else timeout)
 
     def spin(self) -> None:
@@ -92,18 +91,18 @@ class Session:
         self.wait_for(lambda: False, math.inf)
 
     def _spin_once(self, seconds: float) -> None:
-        with signals_held_back() as noted:
+        with deferred_signals() as received_signals:
             self.executor.spin_once(timeout_sec=seconds)
-        for number in noted[:1]:
+        for number in received_signals[:1]:
             signal.raise_signal(number)
 
-    def _least(self, longest: float) -> float:
+    def _min_settling(self, limit: float) -> float:
         if self.spin_time is not None:
             return 0.0
-        alone = len(self.node.get_node_names()) < 2
-        return min(longest, EMPTY if alone else LEAST)
+        is_alone = len(self.node.get_node_names()) < 2
+        return min(limit, MIN_SETTLING_ALONE if is_alone else MIN_SETTLING)
 
-    def _graph(self) -> tuple[object, ...]:
+    def _read_graph(self) -> tuple[object, ...]:
         node = self.node
         return (
             sorted(node.get_node_names_and_namespaces()),
@@ -112,24 +111,26 @@ class Session:
 
 
 @contextmanager
-def signals_held_back() -> Iterator[list[int]]:
-    """Note SIGINT and SIGTERM in a list.
+def deferred_signals() -> Iterator[list[int]]:
+    """Collect SIGINT and SIGTERM in a list while the block runs, instead of handling them.
 
-    Raised in the middle of rclpy's own calls, they leave coroutines that nobody awaits, or come out as other errors.
+    If a handler raises an exception within rclpy, coroutines are never awaited, or another error replaces it.
     """
-    noted: list[int] = []
+    received_signals: list[int] = []
     numbers = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.signal(number, lambda number, _: noted.append(number)) for number in numbers}
+    previous_handlers = {
+        number: signal.signal(number, lambda number, _: received_signals.append(number)) for number in numbers
+    }
     try:
-        yield noted
+        yield received_signals
     finally:
-        for number, handler in before.items():
+        for number, handler in previous_handlers.items():
             signal.signal(number, handler)
 
 
 @contextmanager
 def open_session(args: argparse.Namespace, *, node_name: str | None = None) -> Iterator[Session]:
-    """Start rclpy with a node of our own, and end it afterwards.
+    """Initialize rclpy and create the command's node; shut both down at the end of the block.
 
     Raises:
         Ros2Error: `ROS_DOMAIN_ID`, the node's name, or the name of a topic or service used with it is not valid.
@@ -138,8 +139,8 @@ def open_session(args: argparse.Namespace, *, node_name: str | None = None) -> I
     if not re.fullmatch(r"\d{1,3}", domain) or int(domain) > LAST_DOMAIN:
         raise Ros2Error(f"ROS_DOMAIN_ID is '{domain}', but must be a number from 0 to {LAST_DOMAIN}")
     parameters = [Parameter("use_sim_time", value=True)] if getattr(args, "use_sim_time", False) else []
-    # Python's own handlers stay: Ctrl-C then leaves the context alive, so that a goal can still be cancelled.
-    with announcing_often():
+    # Without rclpy's signal handlers, the context survives Ctrl-C, so that a goal can still be cancelled.
+    with fast_discovery():
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     try:
         name = node_name or f"{NODE_NAME_PREFIX}_{os.getpid()}"
@@ -163,7 +164,7 @@ def open_session(args: argparse.Namespace, *, node_name: str | None = None) -> I
 
 
 def add_session_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that every verb that looks at the graph has."""
+    """Add the options of every verb that queries the graph."""
     parser.add_argument(
         "--spin-time",
         type=float,

@@ -1,4 +1,4 @@
-"""`ros2 topic`: list and info; echo, pub and hz have modules of their own."""
+"""`ros2 topic`: list and info. Other modules implement echo, pub and hz."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 
 from autograder.ros.ros2 import graph, topic_echo, topic_pub, topic_rate
 from autograder.ros.ros2.parsing import ExitCode, Verb
-from autograder.ros.ros2.session import NAMED_QUIET, Session, add_session_arguments, open_session
+from autograder.ros.ros2.session import LOOKUP_QUIET, Session, add_session_arguments, open_session
 
 
 def _list_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,14 +31,14 @@ def _list(args: argparse.Namespace) -> ExitCode:
         if args.count_topics:
             print(len(topics))
         elif args.verbose:
-            _print_ends(session, topics)
+            _print_endpoints(session, topics)
         else:
             for name, types in topics:
                 print(f"{name} [{', '.join(types)}]" if args.show_types else name)
     return None
 
 
-def _print_ends(session: Session, topics: graph.NamesAndTypes) -> None:
+def _print_endpoints(session: Session, topics: graph.NamesAndTypes) -> None:
     for heading, noun, count in (
         ("Published", "publisher", session.node.count_publishers),
         ("Subscribed", "subscriber", session.node.count_subscribers),
@@ -67,7 +67,7 @@ def _info(args: argparse.Namespace) -> ExitCode:
         types = graph.types_of_topic(session, args.topic_name)
         if not types:
             return f"Unknown topic '{args.topic_name}'"
-        session.settle(longest=NAMED_QUIET)
+        session.settle(max_quiet=LOOKUP_QUIET)
         end = "\n\n" if args.verbose else "\n"
         print(f"Type: {types[0] if len(types) == 1 else types}", end=end)
         node = session.node

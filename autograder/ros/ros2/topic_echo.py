@@ -12,11 +12,11 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from autograder.ros.ros2 import graph
 from autograder.ros.ros2.exceptions import Ros2Error
 from autograder.ros.ros2.parsing import ExitCode, positive_float, unsigned_int
-from autograder.ros.ros2.qos import add_qos_arguments, profile_to_listen_with
+from autograder.ros.ros2.qos import add_qos_arguments, subscription_profile
 from autograder.ros.ros2.session import add_session_arguments, open_session
 
 TRUNCATE_LENGTH = 128
-DISCOVERY_SECONDS = 5.0  # for a publisher's QoS, on a busy machine
+DISCOVERY_SECONDS = 5.0  # how long discovering the QoS of a publisher may take on a busy machine
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -61,8 +61,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> ExitCode:
-    """Print the messages of a topic until interrupted (or `--once`, `--timeout`)."""
-    fields = _fields(args.field)
+    """Print the messages of a topic until interrupted, or as limited by `--once` or `--timeout`."""
+    fields = _parse_fields(args.field)
     accept = message_filter(args.filter_expr)
     with open_session(args) as session:
         node = session.node
@@ -73,35 +73,35 @@ def run(args: argparse.Namespace) -> ExitCode:
                 return "Could not determine the type for the passed topic"
         else:
             message_class = graph.load_class(args.message_type, "msg")
-        # The type is known before the publishers' QoS is; a subscription that does not match hears nothing.
+        # The publishers' QoS is discovered after the type. A subscription with an incompatible QoS gets no messages.
         if not args.message_type:
             session.wait_for(lambda: bool(node.get_publishers_info_by_topic(name)), timeout=DISCOVERY_SECONDS)
-        printed = rclpy.Future()
+        first_message_printed = rclpy.Future()
 
         def on_message(message: Any, info: Any) -> None:
-            if args.once and printed.done():
+            if args.once and first_message_printed.done():
                 return
-            part = _select(message, fields)
+            part = _select_field(message, fields)
             if not accept(part):
                 return
-            print(_text(part, info, args), end="\n" if args.csv and hasattr(part, "SLOT_TYPES") else "---\n")
+            print(_message_text(part, info, args), end="\n" if args.csv and hasattr(part, "SLOT_TYPES") else "---\n")
             if args.once:
-                printed.set_result(None)
+                first_message_printed.set_result(None)
 
-        lost = None if args.no_lost_messages else SubscriptionEventCallbacks(message_lost=_report_loss)
+        callbacks = None if args.no_lost_messages else SubscriptionEventCallbacks(message_lost=_report_loss)
         node.create_subscription(
             message_class,
             name,
             on_message,
-            profile_to_listen_with(node, name, args),
-            event_callbacks=lost,
+            subscription_profile(node, name, args),
+            event_callbacks=callbacks,
             raw=args.raw,
         )
-        session.spin_until(printed, args.timeout)
+        session.spin_until(first_message_printed, args.timeout)
     return None
 
 
-def _fields(text: str | None) -> list[str]:
+def _parse_fields(text: str | None) -> list[str]:
     if text is None:
         return []
     fields = [field for field in text.split(".") if field]
@@ -110,7 +110,7 @@ def _fields(text: str | None) -> list[str]:
     return fields
 
 
-def _select(message: Any, fields: list[str]) -> Any:
+def _select_field(message: Any, fields: list[str]) -> Any:
     for field in fields:
         try:
             message = getattr(message, field)
@@ -120,10 +120,10 @@ def _select(message: Any, fields: list[str]) -> Any:
 
 
 def message_filter(expression: str | None) -> Callable[[Any], bool]:
-    """Compile a `--filter` expression over the message `m`; no expression accepts every message.
+    """Compile a `--filter` expression, in which `m` is the message. Without one, the filter accepts every message.
 
     Raises:
-        Ros2Error: it is not a Python expression.
+        Ros2Error: the text is not a Python expression.
     """
     if expression is None:
         return lambda _: True
@@ -131,12 +131,12 @@ def message_filter(expression: str | None) -> Callable[[Any], bool]:
         code = compile(expression, "--filter", "eval")
     except SyntaxError as error:
         raise Ros2Error(f"Invalid filter expression '{expression}': {error}") from None
-    # The user's own expression, on the user's own machine: what the option is for.
+    # The purpose of the option is to run the user's own expression on the user's own machine.
     return lambda m: bool(eval(code, {"m": m}))
 
 
-def _text(part: Any, info: dict[str, Any], args: argparse.Namespace) -> str:
-    """Return what to print for a message or a field of one, and for its info if asked to."""
+def _message_text(part: Any, info: dict[str, Any], args: argparse.Namespace) -> str:
+    """Return the text to print for a message or one of its fields, with the message's info if requested."""
     import yaml
     from rosidl_runtime_py import message_to_csv, message_to_yaml
 

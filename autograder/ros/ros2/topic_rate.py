@@ -18,12 +18,12 @@ from autograder.ros.ros2.parsing import ExitCode, positive_int
 from autograder.ros.ros2.session import add_session_arguments, open_session
 from autograder.ros.ros2.topic_echo import message_filter
 
-WINDOW = 10000
+WINDOW = 10000  # messages; how many are used for the statistics by default
 
 
 @dataclass(frozen=True)
 class Rate:
-    """How often messages came; times in seconds, the rate in hertz."""
+    """The rate of received messages in hertz, and statistics of the intervals between them in seconds."""
 
     rate: float
     shortest: float
@@ -33,7 +33,7 @@ class Rate:
 
     @classmethod
     def of(cls, arrivals: Iterable[int]) -> Rate | None:
-        """Measure the times of arrival, in nanoseconds; `None` for fewer than two."""
+        """Compute the rate from times of arrival in nanoseconds. With fewer than two times, return `None`."""
         gaps = [(later - earlier) * 1e-9 for earlier, later in pairwise(arrivals)]
         if not gaps:
             return None
@@ -77,7 +77,7 @@ def hz(args: argparse.Namespace) -> ExitCode:
     """Print the rate of a topic's messages once a second, until interrupted."""
     accept = message_filter(args.filter_expr)
     arrivals: deque[int] = deque(maxlen=args.window + 1)
-    fresh: list[int] = []  # since the last line
+    new_arrivals: list[int] = []  # the times of arrival since the last line was printed
     with open_session(args) as session:
         message_class = graph.message_class_of(session, args.topic_name, blocking=True)
         clock = Clock(clock_type=ClockType.STEADY_TIME) if args.wall_time else session.node.get_clock()
@@ -90,17 +90,17 @@ def hz(args: argparse.Namespace) -> ExitCode:
                 print("time has reset, resetting counters")
                 arrivals.clear()
             arrivals.append(now)
-            fresh.append(now)
+            new_arrivals.append(now)
 
-        def show() -> None:
-            found = Rate.of(arrivals) if fresh else None
-            fresh.clear()
-            if found is not None:
-                print(found)
+        def print_rate() -> None:
+            rate = Rate.of(arrivals) if new_arrivals else None
+            new_arrivals.clear()
+            if rate is not None:
+                print(rate)
 
         raw = args.filter_expr is None
         session.node.create_subscription(message_class, args.topic_name, on_message, qos_profile_sensor_data, raw=raw)
-        # Wall time even with --use-sim-time: a clock that stands still must not keep the user from seeing it.
-        session.node.create_timer(1.0, show, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        # Always use wall time, so that the rate is printed even if the simulated clock has stopped.
+        session.node.create_timer(1.0, print_rate, clock=Clock(clock_type=ClockType.STEADY_TIME))
         session.spin()
     return None

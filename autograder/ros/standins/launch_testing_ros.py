@@ -1,4 +1,4 @@
-"""The package that lets tests wait for topics: not covered."""
+"""`launch_testing_ros`, which is not covered: it lets tests wait for topics."""
 
 from standin_notice import not_covered
 

@@ -1,4 +1,4 @@
-"""What each stand-in says of itself, and the error it raises for what it does not cover."""
+"""The error that stand-ins raise for names that they do not cover."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from typing import NoReturn
 
-HOW_TO_GET_THE_REAL_ONE = (
+REAL_PACKAGE_ADVICE = (
     "run `make real-launch` (needs GitHub), or use a shell in which an installation of ROS 2 is sourced"
 )
 
@@ -15,26 +15,25 @@ HOW_TO_GET_THE_REAL_ONE = (
 class NotInStandInError(ImportError):
     """A name of the real package that its stand-in does not cover.
 
-    It is an ImportError, because only that keeps its text in ``from launch.actions import Name``.
+    It is an ImportError, because only this type keeps its message in ``from launch.actions import Name``.
     """
 
 
 def not_covered(name: str, *, standin: str, reason: str = "", near: str = "") -> NotInStandInError:
-    """Return the error for `name`, which the stand-in has not; `near` is a name that was perhaps meant."""
-    meant = f" (did you mean '{near}'?)" if near else ""
-    because = f" {reason}." if reason else ""
+    """Return the error for `name`, which the stand-in does not cover; `near` is a similar name that it has."""
+    suggestion = f" (did you mean '{near}'?)" if near else ""
+    explanation = f" {reason}." if reason else ""
     return NotInStandInError(
-        f"'{name}' is not covered{meant}: this is the course's stand-in for {standin}, used because the real one is "
-        f"not installed.{because} To use '{name}', {HOW_TO_GET_THE_REAL_ONE}."
+        f"'{name}' is not covered{suggestion}: this is the course's stand-in for {standin}, used because the real one "
+        f"is not installed.{explanation} To use '{name}', {REAL_PACKAGE_ADVICE}."
     )
 
 
-def guard(module: str, reasons: Mapping[str, str] | None = None) -> Callable[[str], NoReturn]:
-    """Return a module-level ``__getattr__`` that answers every uncovered name of `module` with that error.
+def make_getattr(module: str, reasons: Mapping[str, str] | None = None) -> Callable[[str], NoReturn]:
+    """Return a module-level ``__getattr__`` that raises that error for every uncovered name of `module`.
 
-    `reasons` adds a sentence for names that deserve one; a name that is nearly one of the module's is taken for a
-    typing error first. Private names stay an AttributeError, because
-    Python and its tools ask modules for many of them and expect to be refused that way.
+    `reasons` has an additional sentence for some names. For any other name, the error suggests a similar one of the
+    module. Private names raise an AttributeError, because Python and its tools look up many of them and expect it.
     """
 
     def missing(name: str) -> NoReturn:

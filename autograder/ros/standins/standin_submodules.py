@@ -1,7 +1,7 @@
-"""The public submodules of the real packages, for programs that import a name from the module in which it stands.
+"""The public submodules of the real packages, for programs that import a name from the module that defines it.
 
-The stand-ins divide their code in another way. So `launch.actions.group_action` is a module with the names of
-`launch.actions`. A submodule that no stand-in covers, such as `launch_testing.decorator`, raises an error that says so.
+The modules of the stand-ins are different. So `launch.actions.group_action` is a module with the names of
+`launch.actions`. Importing a submodule that no stand-in covers, such as `launch_testing.decorator`, raises an error.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from types import ModuleType
 
 from standin_notice import not_covered
 
-# The submodules of each module, as the packages of Jazzy have them.
+# The submodules of each module in Jazzy's packages.
 SUBMODULES = {
     "launch": "invalid_launch_file_error some_entities_type some_substitutions_type",
     "launch.actions": (
@@ -70,7 +70,7 @@ SUBMODULES = {
         "to_parameters_list track_node_names"
     ),
 }
-# Those that the real packages have, and the stand-ins do not.
+# The submodules of the real packages that the stand-ins do not cover.
 NOT_COVERED = {
     "launch_ros": "event_handlers events ros_adapters",
     "launch_ros.actions": "lifecycle_node lifecycle_transition ros_timer",
@@ -84,8 +84,8 @@ NOT_COVERED = {
 }
 
 
-class _Submodules(MetaPathFinder, Loader):
-    """Asked last, for what no file of a stand-in holds."""
+class _SubmoduleFinder(MetaPathFinder, Loader):
+    """The last finder in `sys.meta_path`: finds submodules for which the stand-ins have no file."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
@@ -99,14 +99,14 @@ class _Submodules(MetaPathFinder, Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         parent = vars(sys.modules[module.__name__.rpartition(".")[0]])
-        kept = {name for name in parent if not name.startswith("__")} | ({"__getattr__"} & set(parent))
-        module.__dict__.update({name: parent[name] for name in kept})
+        names = {name for name in parent if not name.startswith("__")} | ({"__getattr__"} & set(parent))
+        module.__dict__.update({name: parent[name] for name in names})
 
 
-_FINDER = _Submodules()
+_FINDER = _SubmoduleFinder()
 
 
-def offer_submodules() -> None:
-    """Let programs import the submodules that the real packages have; those that are not covered raise an error."""
+def install_submodule_finder() -> None:
+    """Let programs import the real packages' submodules; importing one that is not covered raises an error."""
     if _FINDER not in sys.meta_path:
         sys.meta_path.append(_FINDER)

@@ -1,4 +1,4 @@
-"""The grader's end of a fork server."""
+"""The grader's interface to a fork server."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from autograder.run.fork_server.request import ForkRequest
 # The command that bubblewrap starts in place of a forked program. It reports that the sandbox is ready, and exits with
 # the status that it receives.
 PLACEHOLDER_COMMAND = ["sh", "-c", 'echo >&0; read -r status || status=137; exit "$status"']
-TIMEOUT = 60.0  # s for a server's imports, or for one fork, on a machine that is busy
-_ARGV_BYTES = 2048  # bytes of command line, which a program's own child can overwrite with its own
+TIMEOUT = 60.0  # s for a server's imports, or for one fork, on a busy machine
+_ARGV_BYTES = 2048  # space in the server's command line, which programs overwrite with their own command lines
 
 
 class ForkError(Exception):
@@ -27,20 +27,27 @@ class ForkServer:
     """One fork server, which forks one program after another.
 
     Args:
-        profile: its early imports, a name in `PROFILES`.
+        profile: the name of its early imports in `PROFILES`.
         environment: its environment variables, which every program can read in its /proc.
     """
 
     def __init__(self, profile: str, environment: Mapping[str, str]) -> None:
         self._lock = threading.Lock()
-        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._socket, server_end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._socket.settimeout(TIMEOUT)
-        with theirs:
+        with server_end:
             self._popen = subprocess.Popen(
-                [sys.executable, "-m", "autograder.run.fork_server", str(theirs.fileno()), profile, " " * _ARGV_BYTES],
+                [
+                    sys.executable,
+                    "-m",
+                    "autograder.run.fork_server",
+                    str(server_end.fileno()),
+                    profile,
+                    " " * _ARGV_BYTES,
+                ],
                 stdin=subprocess.DEVNULL,
                 env=dict(environment),
-                pass_fds=(theirs.fileno(),),
+                pass_fds=(server_end.fileno(),),
                 cwd="/",
                 start_new_session=True,
             )
@@ -51,11 +58,11 @@ class ForkServer:
         return self._popen.pid
 
     def spawn(self, request: ForkRequest, status: int) -> int:
-        """Fork a program into an existing sandbox; return its process id, or raise a ForkError.
+        """Fork a program into an existing sandbox, and return its process id. Raises ForkError if that fails.
 
         Args:
-            request: the program; it gets the descriptors `request.fds`, under the same numbers.
-            status: the descriptor that gets its exit status, as a line.
+            request: the program. It inherits the descriptors `request.fds`, with the same numbers.
+            status: the descriptor to which its exit status is written as a line.
         """
         with self._lock:
             try:
@@ -70,7 +77,7 @@ class ForkServer:
         return int(answer["program"])
 
     def close(self) -> None:
-        """End the server; its programs go on."""
+        """End the server. Its programs continue."""
         self._socket.close()
         self._popen.kill()
         self._popen.wait()

@@ -1,4 +1,4 @@
-"""Does to a forked interpreter what execve(2) and the start of Python do: it becomes that of another program."""
+"""Turns a forked interpreter into that of another program, as if execve(2) had started Python anew."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ from typing import Any
 
 Program = tuple[CodeType, dict[str, Any]]
 
-_ARG_START = 45  # among the fields of /proc/self/stat after the name, before _ARG_END, proc_pid_stat(5)
+_ARG_START = 45  # index among the fields of /proc/self/stat after the name; arg_end is the next, see proc_pid_stat(5)
 
 
 def emulate_start(
-    command: Sequence[str], environment: Mapping[str, str], base: Mapping[str, bool], **given: Any
+    command: Sequence[str], environment: Mapping[str, str], base_paths: Mapping[str, bool], **extra_globals: Any
 ) -> Program:
-    """Make this interpreter like one that was started with a command line; return its code and its globals.
+    """Make this interpreter like one that was started with a command line. Return its code and its globals.
 
     Args:
         command: the words after `python`: `-W FILTER` any number of times, a script or `-c CODE`, and its arguments.
         environment: all environment variables.
-        base: where Python finds modules without any PYTHONPATH, and whether that is there outside the sandbox.
-        given: more globals of the program.
+        base_paths: the module paths without PYTHONPATH, and whether each exists outside the sandbox.
+        extra_globals: additional globals of the program.
     """
     code: CodeType | None = None
 
-    def show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        while trace and trace.tb_frame.f_code is not code:  # the callers of the program are not part of it
-            trace = trace.tb_next
-        sys.__excepthook__(kind, error.with_traceback(trace), trace)
+    def print_exception(kind: type[BaseException], error: BaseException, tb: TracebackType | None) -> None:
+        while tb and tb.tb_frame.f_code is not code:  # skip the callers of the program
+            tb = tb.tb_next
+        sys.__excepthook__(kind, error.with_traceback(tb), tb)
 
-    sys.excepthook = show
-    loaded = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    sys.excepthook = print_exception
+    loaded_folders = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
     os.environ.clear()
-    ctypes.CDLL(None).clearenv()  # loaded libraries have set some that `os` does not know
+    ctypes.CDLL(None).clearenv()  # including variables that libraries have set, which `os` does not know
     os.environ.update(environment)
     words = [*command]
     while words[0] == "-W":
@@ -54,57 +54,61 @@ def emulate_start(
         path = Path(words[0]).absolute()
         file, folder = (path / "__main__.py", str(path)) if path.is_dir() else (path, str(path.parent))
         source = file.read_bytes()
-    _find_modules(command, folder, base)
-    if numbers := sys.modules.get("numpy.random"):
-        numbers.seed()  # its global generator; Python's `random` is seeded anew at each fork
+    _find_modules(command, folder, base_paths)
+    if numpy_random := sys.modules.get("numpy.random"):
+        numpy_random.seed()  # its global generator; Python seeds `random` again at each fork
     set_command_line([sys.executable, *command])
     sys.argv[:] = words
     sys.orig_argv[:] = [sys.executable, *command]
-    _load_libraries(part for part in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if part not in loaded)
+    _load_libraries(
+        part for part in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if part not in loaded_folders
+    )
     main = sys.modules["__main__"] = ModuleType("__main__")
-    main.__dict__.update(__builtins__=builtins, __annotations__={}, **given)
+    main.__dict__.update(__builtins__=builtins, __annotations__={}, **extra_globals)
     if file:
         main.__dict__.update(__file__=str(file), __cached__=None)
     code = compile(source, str(file or "<string>"), "exec", dont_inherit=True)
     return code, main.__dict__
 
 
-def forget(words: Iterable[str]) -> None:
+def unload_packages(words: Iterable[str]) -> None:
     """Unload the modules of packages whose names begin with one of these words."""
     for name in [name for name in sys.modules if re.split("[._]", name)[0] in words]:
         del sys.modules[name]
 
 
 def set_command_line(words: Sequence[str]) -> None:
-    """Set /proc/self/cmdline to `words`, as far as they fit."""
+    """Set /proc/self/cmdline to `words`, cut to the space that exists."""
     start, end = map(int, Path("/proc/self/stat").read_text().rpartition(")")[2].split()[_ARG_START:][:2])
     text = b"".join(os.fsencode(word) + b"\0" for word in words)[: end - start - 1]
     ctypes.memmove(start, text.ljust(end - start, b"\0"), end - start)
 
 
-def _find_modules(command: Sequence[str], first: str, base: Mapping[str, bool]) -> None:
-    """Set `sys.path` as the command line and PYTHONPATH have it.
+def _find_modules(command: Sequence[str], script_folder: str, base_paths: Mapping[str, bool]) -> None:
+    """Set `sys.path` from the command line and PYTHONPATH.
 
-    A program that would have another module than the one that is loaded is started instead.
+    If the program would import another module instead of a loaded one, it is started without forking.
     """
-    given = os.environ.get("PYTHONPATH")  # an empty part means the working folder
-    modules = [*dict.fromkeys(str(Path(part).absolute()) for part in given.split(os.pathsep))] if given else []
+    python_path = os.environ.get("PYTHONPATH")  # an empty part means the working folder
+    modules = (
+        [*dict.fromkeys(str(Path(part).absolute()) for part in python_path.split(os.pathsep))] if python_path else []
+    )
     sys.modules.pop("sitecustomize", None)
-    if _shadowed(modules):
+    if _shadow_loaded_modules(modules):
         os.execve(sys.executable, [sys.executable, *command], os.environ)
-    sys.path[:] = [*modules, *(path for path, there in base.items() if not there or Path(path).exists())]
-    sys.path_importer_cache.clear()  # it knows the folders of the outside
+    sys.path[:] = [*modules, *(path for path, exists in base_paths.items() if not exists or Path(path).exists())]
+    sys.path_importer_cache.clear()  # it describes folders outside the sandbox
     if any(Path(module, "sitecustomize.py").exists() for module in modules):
         importlib.import_module("sitecustomize")
-        importlib.reload(sysconfig)  # colcon's sitecustomize sets another prefix
-    sys.path.insert(0, first)
+        importlib.reload(sysconfig)  # colcon's sitecustomize changes the prefix
+    sys.path.insert(0, script_folder)
 
 
-def _shadowed(folders: Sequence[str]) -> bool:
-    """Return whether a folder contains a module with the name of one that was loaded from elsewhere."""
-    loaded = {name.partition(".")[0] for name in sys.modules}
+def _shadow_loaded_modules(folders: Sequence[str]) -> bool:
+    """Return whether one of the folders contains a module that has the name of one loaded from elsewhere."""
+    loaded_names = {name.partition(".")[0] for name in sys.modules}
     return any(
-        (name := entry.name.partition(".")[0]) in loaded and _is_module(entry) and not _is_from(folder, name)
+        (name := entry.name.partition(".")[0]) in loaded_names and _is_module(entry) and not _is_from(folder, name)
         for folder in folders
         if Path(folder).is_dir()
         for entry in Path(folder).iterdir()
@@ -123,18 +127,18 @@ def _is_from(folder: str, name: str) -> bool:
 def _load_libraries(folders: Iterable[str]) -> None:
     """Load the libraries of the sandbox's own packages.
 
-    The dynamic linker read LD_LIBRARY_PATH when this process was started, and does not search other folders. But it
-    uses libraries that are already loaded. A library that needs another one of them is tried again.
+    The dynamic linker read LD_LIBRARY_PATH when the server was started, and does not search other folders. But it uses
+    libraries that are already loaded. So if a library cannot be loaded yet, it is tried again after the others.
     """
-    waiting = [path for folder in folders if folder for path in sorted(Path(folder).glob("lib*.so"))]
-    while waiting:
-        left = [path for path in waiting if not _loads(path)]
-        if len(left) == len(waiting):
+    pending = [path for folder in folders if folder for path in sorted(Path(folder).glob("lib*.so"))]
+    while pending:
+        failed_paths = [path for path in pending if not _can_load(path)]
+        if len(failed_paths) == len(pending):
             return
-        waiting = left
+        pending = failed_paths
 
 
-def _loads(path: Path) -> bool:
+def _can_load(path: Path) -> bool:
     try:
         ctypes.CDLL(str(path))
     except OSError:

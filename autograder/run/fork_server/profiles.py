@@ -1,6 +1,6 @@
-"""The table of modules that a fork server imports before it forks programs.
+"""The modules that a fork server imports before it forks programs.
 
-A profile imports nothing that its programs would not import anyway. A student's program that lacks an import has to
+A profile only imports modules that its programs would import anyway. A student's program that lacks an import has to
 fail in the grader as it does elsewhere.
 """
 
@@ -28,13 +28,13 @@ KINDS = ("generator_py", "typesupport_c", "typesupport_fastrtps_c", "typesupport
 class Profile:
     """The early imports for one kind of program."""
 
-    load: Callable[[], None]  # imports it
-    forks: bool = False  # whether children of such a program are forked, too (`children.py`)
-    own: tuple[str, ...] = ()  # first words of the names of packages that the programs it starts do not have
+    load: Callable[[], None]  # imports the modules
+    forks_children: bool = False  # whether children of such a program are forked, too (`children.py`)
+    own_packages: tuple[str, ...] = ()  # its children do not use packages whose names begin with these words
 
 
 def _import(*names: str, folder: Path | None = None) -> None:
-    """Import modules; those that no path leads to are in `folder`."""
+    """Import modules, with `folder` as an additional path."""
     if folder is not None:
         sys.path.append(str(folder))
     for name in names:
@@ -44,13 +44,14 @@ def _import(*names: str, folder: Path | None = None) -> None:
 
 
 def _ros() -> None:
-    """Load the libraries of ROS and of the common messages, and no module of them.
+    """Load the libraries of ROS and of the common messages, but none of their modules.
 
-    A module of messages imports rosidl's generator if it can, which takes an eighth of a program's start: it cannot.
+    Modules of messages would also import rosidl's generator, which takes an eighth of the time that a program needs to
+    start. So the generator is hidden from them.
     """
     sys.modules.setdefault("rosidl_generator_py.generate_py_impl", None)  # type: ignore[arg-type]
     for name in ("rmw_fastrtps_cpp", *(f"{package}__rosidl_{kind}" for package in MESSAGES for kind in KINDS)):
-        with suppress(OSError):  # a ROS that does without one of them is as good
+        with suppress(OSError):  # this ROS does not have the library, and does not need it
             ctypes.CDLL(f"lib{name}.so")
 
 
@@ -76,18 +77,18 @@ def _launch() -> None:
 
 def _colcon() -> None:
     """Import the modules that colcon needs to build Python packages, and those of their setup.py."""
-    # colcon looks for CMake when it is imported, and finds it in the sandbox there.
+    # colcon looks for CMake when it is imported. These paths are the ones in the sandbox.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.prefix) / "bin"), "/usr/bin", "/bin"])
     _import("asyncio.subprocess", "setuptools", "distutils.core", "colcon_core.command")
     for point in (point for package in distributions() for point in package.entry_points):
         if point.group.startswith("colcon_") or point.group in ("distutils.commands", "egg_info.writers"):
-            with suppress(Exception):  # colcon and setuptools do without it, too
+            with suppress(Exception):  # colcon and setuptools also ignore such errors
                 point.load()
 
 
 PROFILES = {
     "lockstep": Profile(_lockstep),
     "tests": Profile(_tests),
-    "launch": Profile(_launch, forks=True, own=("launch", "standin")),
-    "colcon": Profile(_colcon, forks=True, own=("colcon",)),
+    "launch": Profile(_launch, forks_children=True, own_packages=("launch", "standin")),
+    "colcon": Profile(_colcon, forks_children=True, own_packages=("colcon",)),
 }

@@ -1,4 +1,4 @@
-"""The request to a fork server: one program, as data that crosses a socket.
+"""The request to a fork server. It describes one program, and is sent through a socket.
 
 The server answers with the program's process id and then "entered", or with the reason why it has "failed".
 """
@@ -8,8 +8,8 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass
 
-MAX_BYTES = 1024 * 1024
-MAX_FDS = 16
+MAX_BYTES = 1024 * 1024  # of a request
+MAX_FDS = 16  # file descriptors that are sent with a request
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,8 @@ class ForkRequest:
     limits: dict[str, tuple[int, int]]  # the kernel's limits on it, soft and hard, by their names in `resource`
     placeholder: int  # the process in the sandbox that waits for the program's exit status
     groups: list[str]  # the folders of the sandbox's control group
-    # The numbers of the descriptors that the program gets. The request comes with them, and before them with
-    # the one on which the placeholder waits for the program's exit status.
+    # The numbers of the descriptors that the program inherits. They are sent with the request, after the one from which
+    # the placeholder reads the program's exit status.
     fds: list[int]
 
     def to_bytes(self) -> bytes:

@@ -1,9 +1,9 @@
 """A fork server's process: it forks a program for each request.
 
-It is trusted, lives outside every sandbox, and runs no line of a student's. For each request a child, the supervisor,
-enters the sandbox that bubblewrap has made, forks the program's process there, and writes its exit status to the
-process that bubblewrap waits for. The program's process gives up all rights (`confinement.py`) before it reads anything
-of a student's, and then becomes the program.
+It is trusted, runs outside every sandbox, and executes no student code. For each request, a child, the supervisor,
+enters the sandbox that bubblewrap has created, forks the program's process there, and writes its exit status to the
+placeholder for which bubblewrap waits. The program's process gives up all rights (`confinement.py`) before it reads any
+student's file, and then becomes the program.
 """
 
 from __future__ import annotations
@@ -22,28 +22,29 @@ from pathlib import Path
 
 from autograder.run.fork_server import confinement
 from autograder.run.fork_server.children import fork_children
-from autograder.run.fork_server.emulation import Program, emulate_start, forget
+from autograder.run.fork_server.emulation import Program, emulate_start, unload_packages
 from autograder.run.fork_server.profiles import PROFILES
 from autograder.run.fork_server.request import MAX_BYTES, MAX_FDS, ForkRequest
 
 
 def main() -> Program:
-    """Serve until the requests end. Return only in the process of a program, with its request."""
-    atexit.register(_release)  # the first that is registered is called last
+    """Serve until the requests end. Return only in the process of a program, with its code and globals."""
+    atexit.register(_release)  # registered first, so that it is called last
     del sys.path[0]  # the working folder, which -m adds
     requests, profile = socket.socket(fileno=int(sys.argv[1])), PROFILES[sys.argv[2]]
-    given = {str(Path(part).absolute()) for part in os.environ.get("PYTHONPATH", "").split(os.pathsep)}
-    before = [path for path in sys.path if path not in given]
+    python_path = {str(Path(part).absolute()) for part in os.environ.get("PYTHONPATH", "").split(os.pathsep)}
+    initial_paths = [path for path in sys.path if path not in python_path]
     gc.disable()  # imported objects are never garbage
     profile.load()
-    gc.freeze()  # so that no collection touches shared pages, which would copy them
+    gc.freeze()  # a garbage collection would write to shared memory pages, and so copy them
     gc.enable()
-    added = [path for path in sys.path if path not in before and path.startswith(sys.prefix)]  # by setuptools
-    base = {path: Path(path).exists() for path in (*before, *added)}
+    # setuptools adds paths.
+    added_paths = [path for path in sys.path if path not in initial_paths and path.startswith(sys.prefix)]
+    base_paths = {path: Path(path).exists() for path in (*initial_paths, *added_paths)}
     request = serve(requests)
-    forget(("autograder",))
-    namespace = {"fork_children": partial(fork_children, profile.own)} if profile.forks else {}
-    return emulate_start(request.command, {**request.environment, "PWD": request.workdir}, base, **namespace)
+    unload_packages(("autograder",))
+    namespace = {"fork_children": partial(fork_children, profile.own_packages)} if profile.forks_children else {}
+    return emulate_start(request.command, {**request.environment, "PWD": request.workdir}, base_paths, **namespace)
 
 
 def _release() -> None:
@@ -56,26 +57,26 @@ def _release() -> None:
 def serve(requests: socket.socket) -> ForkRequest:
     """Fork for each request until they end. Return only in the process of a program, with its request.
 
-    A request is received by the child that it is for: a program finds nothing of earlier ones in its memory.
+    Each request is received by a new child, so that a program finds no earlier requests in its memory.
     """
     while True:
         select.select([requests], [], [])
-        taken, told = os.pipe()
+        receipt_reader, receipt_writer = os.pipe()
         if os.fork() == 0:
             data, fds, _, _ = socket.recv_fds(requests, MAX_BYTES, MAX_FDS)
             if not data:
                 os._exit(0)
-            os.write(told, b"1")
+            os.write(receipt_writer, b"1")
             request = ForkRequest.from_bytes(data)
-            with _reporting(requests):
+            with _report_failure_to(requests):
                 if not _supervise(requests, request, fds[0]):
                     _confine(requests, request, fds[1:])
                     return request
             os._exit(0)
-        os.close(told)
-        received = os.read(taken, 1)
-        os.close(taken)
-        if not received:
+        os.close(receipt_writer)
+        receipt = os.read(receipt_reader, 1)
+        os.close(receipt_reader)
+        if not receipt:
             os._exit(0)
         with suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:
@@ -83,8 +84,8 @@ def serve(requests: socket.socket) -> ForkRequest:
 
 
 @contextmanager
-def _reporting(requests: socket.socket) -> Iterator[None]:
-    """Answer that the request has failed, and end this process."""
+def _report_failure_to(requests: socket.socket) -> Iterator[None]:
+    """If the block fails, answer that the request has failed, and end this process."""
     try:
         yield
     except BaseException as error:
@@ -93,31 +94,31 @@ def _reporting(requests: socket.socket) -> Iterator[None]:
 
 
 def _supervise(requests: socket.socket, request: ForkRequest, status_fd: int) -> bool:
-    """Supervise one program until its end; return at once, and False, in the program's own process."""
+    """Supervise one program until its end, and return True. In the program's own process, return False at once."""
     for group in request.groups:
         (Path(group) / "cgroup.procs").write_text("0")
     output = os.open(f"/proc/{request.placeholder}/fd/2", os.O_WRONLY)
-    inner = confinement.join(request.placeholder)
+    user_namespace = confinement.join(request.placeholder)
     program = os.fork()
     if program == 0:
         os.setsid()
         os.dup2(output, 1)
         os.dup2(output, 2)
-        confinement.join_user(inner)
+        confinement.join_user(user_namespace)
         return False
     requests.send(json.dumps({"program": program}).encode())
     _, status = os.waitpid(program, 0)
     code = os.waitstatus_to_exitcode(status)
-    with suppress(BrokenPipeError):  # the sandbox was ended from outside
+    with suppress(BrokenPipeError):  # the sandbox was killed
         os.write(status_fd, b"%d\n" % (code if code >= 0 else 128 - code))
     return True
 
 
 def _confine(requests: socket.socket, request: ForkRequest, fds: list[int]) -> None:
-    """Give up whatever is left of the outside, the socket of the requests last of all."""
+    """Give up all access to the outside, and finally close the socket of the requests."""
     os.chdir(request.workdir)
-    with socket.socket(fileno=confinement.place(fds, request.fds, requests.detach())) as kept:
-        with _reporting(kept):
-            confinement.limit(request.limits)
+    with socket.socket(fileno=confinement.place_descriptors(fds, request.fds, requests.detach())) as reply_socket:
+        with _report_failure_to(reply_socket):
+            confinement.set_limits(request.limits)
             confinement.drop_privileges()
-        kept.send(b'{"entered": true}')
+        reply_socket.send(b'{"entered": true}')

@@ -1,4 +1,4 @@
-"""Why a student's program ended or stopped, in a sentence that the student can act on."""
+"""Explains to students why their program ended or stopped, and what to change."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import re
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.run.lockstep.protocol import Crash, Deadlock
-from autograder.run.lockstep.tracebacks import own_frames
+from autograder.run.lockstep.tracebacks import student_frames
 from autograder.run.sandbox import ExitReason, Process
 
-_LINES = 25
+_LINES = 25  # of the end of a program's output, which a diagnosis contains
 _FRAME = re.compile(r"^  File .*, in (\w+)$", re.MULTILINE)
-_GENERATED = re.compile(r'/(?:msg|srv|action)/_\w{1,200}\.py", line \d')  # a module of an interface
+_GENERATED = re.compile(r'/(?:msg|srv|action)/_\w{1,200}\.py", line \d')  # a generated interface module
 _PHASES = {
     "import": (Kind.CRASHED_AT_IMPORT, "Your module could not be imported"),
     "start": (Kind.CRASHED_AT_START, "Your node crashed while it was being set up, before it started to spin"),
@@ -44,42 +44,42 @@ _LIMITS = {
 
 
 def diagnose_crash(crash: Crash) -> Diagnosis:
-    """Return the diagnosis of a reported exception; syntax errors and unwritten exercises have their own."""
-    trace = tail(own_frames(crash.traceback))
+    """Return the diagnosis of a reported exception, which may be a syntax error or an unfinished exercise."""
+    traceback_text = tail(student_frames(crash.traceback))
     if crash.type == "SyntaxError" and _GENERATED.search(crash.traceback):
         sentence = (
             f"Python cannot read what rosidl made of one of your definitions: {crash.message}. rosidl writes no empty "
             "array, [], as a default: leave it out, since an array without a default is empty."
         )
-        return Diagnosis(Kind.CRASHED_AT_IMPORT, sentence, trace)
+        return Diagnosis(Kind.CRASHED_AT_IMPORT, sentence, traceback_text)
     if crash.type in ("SyntaxError", "IndentationError", "TabError"):
         return Diagnosis(
             Kind.SYNTAX_ERROR,
             f"Python cannot read your file: {crash.message}. Fix that line, then run the file again.",
-            trace,
+            traceback_text,
         )
     if crash.type == "NotImplementedError":
-        frames = _FRAME.findall(trace)
-        where = f", in {frames[-1]}" if frames else ""
+        frames = _FRAME.findall(traceback_text)
+        location = f", in {frames[-1]}" if frames else ""
         sentence = (
-            f"A part of the exercise is still to be written{where}: replace the line "
+            f"A part of the exercise is still to be written{location}: replace the line "
             "raise NotImplementedError(...) with your code."
         )
-        return Diagnosis(Kind.UNFINISHED, sentence, trace)
-    kind, what = _PHASES[crash.phase]
-    if crash.type == "TypeError" and "in send_response" in crash.traceback:  # rclpy says no more than TypeError
+        return Diagnosis(Kind.UNFINISHED, sentence, traceback_text)
+    kind, summary = _PHASES[crash.phase]
+    if crash.type == "TypeError" and "in send_response" in crash.traceback:  # rclpy gives no other reason
         sentence = "A service's callback has not returned the response: it has to return it on every path."
-        return Diagnosis(kind, sentence, trace)
+        return Diagnosis(kind, sentence, traceback_text)
     reason = f"{crash.type}: {crash.message}" if crash.message else crash.type
     return Diagnosis(
         kind,
-        f"{what}: {reason}. The last lines of the traceback say where.",
-        trace,
+        f"{summary}: {reason}. The last lines of the traceback say where.",
+        traceback_text,
     )
 
 
 def diagnose_exit(process: Process) -> Diagnosis:
-    """Return the diagnosis of a program that ended, or no longer answers, and reported no exception."""
+    """Return the diagnosis of a program that ended or no longer answers, but has reported no exception."""
     detail = tail(process.output)
     if process.exit_reason in _LIMITS:
         kind, sentence = _LIMITS[process.exit_reason]
@@ -99,38 +99,38 @@ def diagnose_exit(process: Process) -> Diagnosis:
             "The line with Assertion says which type it should have been.",
             detail,
         )
-    how = f"exit status {status}" if status is not None and status >= 0 else f"signal {-(status or 0)}"
+    ending = f"exit status {status}" if status is not None and status >= 0 else f"signal {-(status or 0)}"
     return Diagnosis(
         Kind.ENDED_EARLY,
-        f"Your program ended by itself ({how}) while its node should have kept spinning: "
+        f"Your program ended by itself ({ending}) while its node should have kept spinning: "
         "main() has to call rclpy.spin(node), and nothing may call exit().",
         detail,
     )
 
 
-def diagnose_no_answer(kind: Kind, waited: str, output: str) -> Diagnosis:
+def diagnose_no_answer(kind: Kind, duration: str, output: str) -> Diagnosis:
     """Return the diagnosis of a program that did not answer in time.
 
     Args:
         kind: `NEVER_STARTED` or `STUCK`.
-        waited: how long the wait was, in words, such as "60 s".
+        duration: the duration of the wait in words, such as "60 s".
         output: what the program printed.
     """
     if kind is Kind.NEVER_STARTED:
         sentence = (
-            f"Your node did not start to spin within {waited}: look for a loop, an input() or a sleep in "
+            f"Your node did not start to spin within {duration}: look for a loop, an input() or a sleep in "
             "__init__ or in main() before rclpy.spin(node)."
         )
     else:
         sentence = (
-            f"Your node did not come back from a callback within {waited}: a callback must return quickly. "
+            f"Your node did not come back from a callback within {duration}: a callback must return quickly. "
             "Look for a loop that waits, a time.sleep or a blocking call."
         )
     return Diagnosis(kind, sentence, tail(output))
 
 
 def diagnose_too_much(output: str) -> Diagnosis:
-    """Return the diagnosis of a program whose nodes, topics and timers are too many to be told in one message."""
+    """Return the diagnosis of a program that has too many nodes, topics and timers for one message."""
     sentence = (
         "Your program has more nodes, topics, services or timers than can be graded: make each of them once, in "
         "__init__, and none in a loop or in a callback."
@@ -138,7 +138,7 @@ def diagnose_too_much(output: str) -> Diagnosis:
     return Diagnosis(Kind.STUCK, sentence, tail(output))
 
 
-UNSTEPPABLE = {  # why a program cannot be stepped, as a clause, by each of the protocol's `REASONS`
+UNSTEPPABLE = {  # why a program cannot be stepped, as a clause, for each of the protocol's `REASONS`
     "thread": "it uses rclpy in threads of its own",
     "clock": "it has a timer on a clock that is not the ROS clock",
     "sleep": "it sleeps in a loop instead of spinning",
@@ -166,10 +166,10 @@ _DEADLOCKS = {
 
 def diagnose_deadlock(deadlock: Deadlock, output: str) -> Diagnosis:
     """Return the diagnosis of a call that will never return."""
-    asked = f" for an answer of {deadlock.name}" if deadlock.name else ""
-    it = "what takes the answer" if deadlock.name else "the callback that would end the wait"
-    why = _DEADLOCKS[deadlock.reason].format(it=it)
-    sentence = f"Your node waits for ever in {deadlock.what}{asked}, a deadlock: {why}."
+    purpose = f" for an answer of {deadlock.name}" if deadlock.name else ""
+    awaited = "what takes the answer" if deadlock.name else "the callback that would end the wait"
+    reason = _DEADLOCKS[deadlock.reason].format(it=awaited)
+    sentence = f"Your node waits for ever in {deadlock.what}{purpose}, a deadlock: {reason}."
     return Diagnosis(Kind.STUCK, sentence, tail(output))
 
 
@@ -179,10 +179,12 @@ def tail(text: str, lines: int = _LINES) -> str:
 
 
 def diagnose_output(process: Process) -> Diagnosis | None:
-    """Return the diagnosis of a crash from the traceback that a program in real time printed; None without one."""
+    """Return the diagnosis of a crash from the traceback that a program printed in real time, or None."""
     if "Traceback (most recent call last)" not in process.output:
         return None
-    trace = process.output.rpartition("Traceback (most recent call last)")[2]
-    last = next((line for line in reversed(trace.strip().splitlines()) if line and not line[0].isspace()), "")
-    kind, _, message = last.partition(": ")
-    return diagnose_crash(Crash("start", kind, message, tail(trace)))
+    traceback_text = process.output.rpartition("Traceback (most recent call last)")[2]
+    last_line = next(
+        (line for line in reversed(traceback_text.strip().splitlines()) if line and not line[0].isspace()), ""
+    )
+    kind, _, message = last_line.partition(": ")
+    return diagnose_crash(Crash("start", kind, message, tail(traceback_text)))

@@ -1,4 +1,4 @@
-"""The messages between stepper and host: a JSON object a line, over two inherited pipes.
+"""The messages between stepper and host: one JSON object per line, over two inherited pipes.
 
     stepper -> host   {"op": "describe"}
                       {"op": "match", "kept": {CHANNEL: COUNT}, "early": {CHANNEL: COUNT}}
@@ -12,13 +12,15 @@
                       {"event": "deadlock", "what": ..., "name": ..., "reason": ...}
                       {"event": "crash", "phase": ..., "type": ..., "message": ..., "traceback": ...}
 
-`lockstep_host/channels.py` names channels. An event is an instant of ROS time, and counts what the grader and other
-programs have sent on the channels that the program reads; no topic is in two events of one command. The reply says what
-was sent in each event. It has fewer events than the command if the program has made an endpoint or a timer: the others
-are to be sent again. The stepper starts the host with the ROS time at which the program starts.
+`lockstep_host/channels.py` defines the names of channels. An event is an instant of ROS time, with the number of
+messages that the grader and other programs have sent on each channel that the program reads. In a command, each topic
+is in at most one event. The reply contains how many messages the program sent in each event. If the program has created
+an endpoint or a timer, the reply has fewer events than the command, and the others have to be sent again. The stepper
+starts the host with the ROS time at which the program starts.
 
-The host shares a process with the student's code, which may forge any event. So every event is bounded in size and
-parsed into these records, or refused. They serve only to wait less and to explain; no point depends on them.
+The host shares a process with the student's code, which may forge any of its lines. So lines are limited in size, and
+those that do not match these records are refused. They only shorten waits and explain failures. No points depend on
+them.
 """
 
 from __future__ import annotations
@@ -30,53 +32,57 @@ from functools import cached_property
 from typing import Any
 
 START_NS = 100 * 10**9  # ROS time at which a program starts; 0 would mean "time is not known yet"
-MAX_LINE = 64 * 1024
-MAX_TEXT = 8 * 1024
-MAX_COUNT = 2**63 - 1  # of messages, and of nanoseconds of ROS time
+MAX_LINE = 64 * 1024  # bytes
+MAX_TEXT = 8 * 1024  # characters of each text in a line that are kept
+MAX_COUNT = 2**63 - 1  # the largest number of messages, or of nanoseconds of ROS time
 REASONS = ("thread", "clock", "sleep")  # why a program cannot be stepped
 WAITS = ("thread", "group", "spin")  # why a wait never ends
-PHASES = ("import", "start", "spin")
+PHASES = ("import", "start", "spin")  # of a program
 
 Event = tuple[int, Mapping[str, int]]
 """An instant of ROS time in ns, and the messages that were sent to the program since its last event, by channel."""
 
 
 class ProtocolError(Exception):
-    """The host's line is no message of this protocol."""
+    """A line of the host is not a message of this protocol."""
 
 
 @dataclass(frozen=True)
 class Description:
-    """What the host sees of the student's nodes."""
+    """The student's nodes, as the host describes them."""
 
     nodes: tuple[str, ...] = ()  # fully qualified names
     timers: tuple[int, ...] = ()  # periods in nanoseconds
-    writers: tuple[tuple[str, int], ...] = ()  # the channel of each publisher, and how many subscriptions it sees
-    # The channels of each subscription, and how many publishers it sees (None: that cannot be told).
+    writers: tuple[tuple[str, int], ...] = ()  # each publisher's channel, and how many subscriptions it is matched with
+    # Each subscription's channels, and how many publishers it is matched with, or None if that is unknown.
     readers: tuple[tuple[tuple[str, ...], int | None], ...] = ()
-    clients: tuple[tuple[str, bool], ...] = ()  # the channel of each client's requests, and whether it sees a server
+    clients: tuple[tuple[str, bool], ...] = ()  # the channel of each client's requests, and whether it has a server
     servers: tuple[str, ...] = ()  # the channel of each service's requests
-    early: dict[str, int] = field(default_factory=dict)  # messages that were sent before the first step, by channel
-    kept: dict[str, int] = field(default_factory=dict)  # messages that transient-local publishers hold, by channel
-    prefix: str = ""  # of the process's GUIDs
+    early: dict[str, int] = field(default_factory=dict)  # number of messages sent before the first step, by channel
+    kept: dict[str, int] = field(
+        default_factory=dict
+    )  # how many messages its publishers keep for late readers, by channel
+    prefix: str = ""  # prefix of the process's GUIDs
 
     @cached_property
     def reads(self) -> frozenset[str]:
-        """Every channel that the program takes messages from."""
+        """Every channel from which the program takes messages."""
         subscribed = {channel for channels, _ in self.readers for channel in channels}
-        return frozenset({*subscribed, *self.servers, *(answers(name, self.prefix) for name, _ in self.clients)})
+        return frozenset(
+            {*subscribed, *self.servers, *(response_channel(name, self.prefix) for name, _ in self.clients)}
+        )
 
 
 @dataclass(frozen=True)
 class Reply:
     """A finished step."""
 
-    sent: tuple[dict[str, int], ...]  # how many messages the nodes have sent in each event that is over, by channel
-    lost: tuple[str, ...] = ()  # channels on which messages that were announced did not arrive in time
-    changed: bool = False  # whether there are endpoints or timers that the last description did not name
-    wake: int | None = None  # the next instant at which something in the program continues, besides its timers
-    due: int | None = None  # from when on the program has something to do by itself; 0 if it may at any time
-    notes: tuple[str, ...] = ()  # why steps are not all that moves the program; one of `REASONS`
+    sent: tuple[dict[str, int], ...]  # for each finished event, how many messages the nodes have sent, by channel
+    lost: tuple[str, ...] = ()  # channels on which announced messages did not arrive in time
+    changed: bool = False  # whether endpoints or timers exist that are not in the last description
+    wake: int | None = None  # when the program wakes up next for anything but a timer
+    due: int | None = None  # when something in the program is due next; 0 if that is unknown
+    notes: tuple[str, ...] = ()  # why the program may also run between steps: some of `REASONS`
 
 
 @dataclass(frozen=True)
@@ -91,10 +97,10 @@ class Crash:
 
 @dataclass(frozen=True)
 class Deadlock:
-    """A call that will never return; `name` is the service or action that it asks, or empty.
+    """A call that will never return. `name` is the name of its service or action, or empty.
 
-    `reason` is what keeps the answer from being taken: thread (the only one is in the call), group (the callback group)
-    or spin (nothing spins yet).
+    `reason` tells why the answer is never taken: thread (the only thread is in the call), group (the callback group is
+    busy) or spin (nothing spins yet).
     """
 
     what: str
@@ -102,15 +108,15 @@ class Deadlock:
     reason: str
 
 
-def answers(request: str, prefix: str) -> str:
-    """Return the channel of the responses to requests on a channel, to the clients of one process."""
+def response_channel(request: str, prefix: str) -> str:
+    """Return the channel on which the clients of one process receive the responses to requests on another channel."""
     return f"{request.removesuffix('request')}response {prefix}"
 
 
 def parse(line: bytes) -> tuple[str, Any]:
-    """Return which event a line is, and its record, or raise a ProtocolError.
+    """Return the name of a line's event and its record. Raise a ProtocolError if the line is invalid.
 
-    The record is a `Description`, `Reply`, `Crash` or `Deadlock`, for `unsteppable` one of `REASONS`, for others None.
+    The record is a `Description`, `Reply`, `Crash` or `Deadlock`, one of `REASONS` for `unsteppable`, or None.
     """
     if len(line) > MAX_LINE or not line.endswith(b"\n"):
         raise ProtocolError("the line is too long, or was cut short")
@@ -126,8 +132,8 @@ def _description(**data: Any) -> Description:
     return Description(
         nodes=_texts(data["nodes"]),
         timers=tuple(map(_count, data["timers"])),
-        writers=tuple((_text(channel), _count(seen)) for channel, seen in data["writers"]),
-        readers=tuple((_texts(names), None if seen is None else _count(seen)) for names, seen in data["readers"]),
+        writers=tuple((_text(channel), _count(peers)) for channel, peers in data["writers"]),
+        readers=tuple((_texts(names), None if peers is None else _count(peers)) for names, peers in data["readers"]),
         clients=tuple((_text(channel), ready is True) for channel, ready in data["clients"]),
         servers=_texts(data["servers"]),
         early=_counts(data["early"]),
@@ -161,7 +167,7 @@ _RECORDS: dict[str, Callable[..., Any]] = {
 
 
 def _text(value: Any) -> str:
-    """Return a text, shortened to the end of it."""
+    """Return a text, or only its end if it is too long."""
     if not isinstance(value, str):
         raise TypeError
     return value[-MAX_TEXT:]
@@ -172,7 +178,7 @@ def _texts(values: Any) -> tuple[str, ...]:
 
 
 def _count(value: Any) -> int:
-    if type(value) is not int or not 0 <= value <= MAX_COUNT:  # True is no count
+    if type(value) is not int or not 0 <= value <= MAX_COUNT:  # a bool is not a count
         raise TypeError
     return value
 

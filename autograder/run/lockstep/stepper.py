@@ -1,4 +1,4 @@
-"""The trusted end of a host's pipes: it starts the host, steps it, and tells the student how the program failed."""
+"""The trusted side of a host's pipes. It starts and steps the host, and explains failures of the program."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ from autograder.run.sandbox.launcher import launch
 from autograder.run.sandbox.spec import Sandbox
 
 HOST = Path(__file__).with_name("lockstep_host")
-QUIT_SECONDS = 20.0
-HARMLESS_SECONDS = 1.0  # for which a program may keep the grader waiting, whatever the reason
-_TICK = 0.5  # s between two looks at how much a silent program has computed
+QUIT_SECONDS = 20.0  # maximum real time until a program that has reported its crash has ended
+HARMLESS_SECONDS = 1.0  # if all waits for a program take at most this long, their cause is not analysed
+_TICK = 0.5  # s between two measurements of the processor time of a program that does not answer
 
 
 @dataclass(frozen=True)
 class Timeout:
-    """How long a program may take for an answer: real time, and processor time, which finds an endless loop."""
+    """The time limits for an answer: in real time, and in processor time, which detects endless loops."""
 
-    seconds: float  # generous for a machine that is busy
+    seconds: float  # long enough for a busy machine
     cpu_seconds: float
 
 
-# From the start to the first wait for work, which takes half a second of processor time.
+# For the time from a program's start to its first wait for work, which usually takes 0.5 s of processor time.
 START_TIMEOUT = Timeout(60.0, 15.0)
 STEP_TIMEOUT = Timeout(30.0, 10.0)
 
@@ -59,60 +59,60 @@ class UnsteppableError(StudentError):
 class Stepper:
     """One student's program in lockstep; a context manager that leaves no process behind.
 
-    Every method raises `StudentError` when the program crashes, ends, hangs or goes over a limit, and
-    `UnsteppableError` when it turns out that it cannot be stepped.
+    Every method raises `StudentError` when the program crashes, ends, hangs or exceeds a limit, and
+    `UnsteppableError` when it cannot be stepped.
 
     Args:
-        spec: the sandbox, which shows the program and the host.
+        spec: the sandbox, in which the program and the host are visible.
         executable: the program's path.
-        arguments: the program's.
-        clock_rate: seconds that the clocks of its machine count in a second of ROS time.
+        arguments: the program's arguments.
+        clock_rate: how many seconds the program's system clocks advance per second of ROS time.
     """
 
     def __init__(
         self, spec: Sandbox, executable: Path, arguments: tuple[str, ...] = (), clock_rate: float = 1.0
     ) -> None:
-        self._at_start = starvation.look(())
-        their_read, our_write = os.pipe()
-        our_read, their_write = os.pipe()
-        words = (HOST, their_read, their_write, START_NS, clock_rate, executable)
+        self._use_at_start = starvation.measure_use(())
+        host_read, write_fd = os.pipe()
+        read_fd, host_write = os.pipe()
+        words = (HOST, host_read, host_write, START_NS, clock_rate, executable)
         command = [sys.executable, *map(str, words), *arguments]
         try:
-            self.process: Process = launch(command, spec, pass_fds=(their_read, their_write), profile="lockstep")
+            self.process: Process = launch(command, spec, pass_fds=(host_read, host_write), profile="lockstep")
         finally:
-            os.close(their_read)
-            os.close(their_write)
-        os.set_blocking(our_write, False)  # a program that does not read must not hold up the grader
-        self._write_fd = our_write
-        self._read_fd = our_read
+            os.close(host_read)
+            os.close(host_write)
+        os.set_blocking(write_fd, False)  # a program that does not read must not block the grader
+        self._write_fd = write_fd
+        self._read_fd = read_fd
         self._buffer = bytearray()
-        self._held = 0.0  # s for which it kept the grader waiting
-        self._excused = 0.0  # those of them in which the machine did not let it run, as far as looked at
+        self._waited_seconds = 0.0  # real time for which the grader has waited for the program's answers
+        self._starved_seconds = 0.0  # the part of it in which other processes kept the program from running
         self._selector = selectors.DefaultSelector()
-        self._selector.register(our_read, selectors.EVENT_READ)
+        self._selector.register(read_fd, selectors.EVENT_READ)
 
     def wait_ready(self) -> None:
-        """Wait until the program waits for work for the first time."""
+        """Wait until the program first waits for work."""
         self._expect("ready", START_TIMEOUT, Kind.NEVER_STARTED)
 
     def describe(self) -> Description:
-        """Ask what the program's nodes look like."""
+        """Request a description of the program's nodes."""
         self._send({"op": "describe"})
         description: Description = self._expect("description", STEP_TIMEOUT, Kind.STUCK)
         return description
 
     def match(self, kept: Mapping[str, int], early: Mapping[str, int]) -> None:
-        """Tell the program that its endpoints are matched, and what others sent before, by channel.
+        """Tell the program that its endpoints are matched, and how many messages others have sent, by channel.
 
         Args:
-            kept: messages that transient-local publishers hold.
+            kept: messages that transient-local publishers keep.
             early: requests and responses.
         """
         self._send({"op": "match", "kept": dict(kept), "early": dict(early)})
         self._expect("matched", STEP_TIMEOUT, Kind.STUCK)
 
     def step(self, events: Sequence[Event]) -> Reply:
-        """Run the program for events, at least one, in the order of their instants, or for the first of them."""
+        """Run the program for events in the order of their instants. The reply may cover only the first of them."""
         self._send({"op": "step", "events": events})
         reply: Reply = self._expect("done", STEP_TIMEOUT, Kind.STUCK)
         if not 0 < len(reply.sent) <= len(events):
@@ -123,8 +123,8 @@ class Stepper:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._held > HARMLESS_SECONDS:
-            self._excuse()
+        if self._waited_seconds > HARMLESS_SECONDS:
+            self._deduct_starvation()
         self.process.__exit__()
         self._selector.close()
         os.close(self._read_fd)
@@ -136,7 +136,7 @@ class Stepper:
         except (BrokenPipeError, BlockingIOError):
             raise StudentError(self._exit_reason()) from None
 
-    def _expect(self, wanted: str, timeout: Timeout, on_timeout: Kind) -> Any:
+    def _expect(self, expected_event: str, timeout: Timeout, on_timeout: Kind) -> Any:
         try:
             event, record = protocol.parse(self._read_line(timeout, on_timeout))
         except ProtocolError:
@@ -148,55 +148,55 @@ class Stepper:
             raise UnsteppableError(record, self.process.output)
         if event == "deadlock":
             raise StudentError(diagnose_deadlock(record, self.process.output))
-        if event != wanted:
+        if event != expected_event:
             raise StudentError(self._exit_reason())
         return record
 
     def _read_line(self, timeout: Timeout, on_timeout: Kind) -> bytes:
         """Return one line, or b'' at the end of the stream."""
-        began, before = time.monotonic(), None
-        deadline = began + patience.bounded(timeout.seconds)
+        start, first_cpu_seconds = time.monotonic(), None
+        deadline = start + patience.bounded(timeout.seconds)
         while b"\n" not in self._buffer:
             if len(self._buffer) > protocol.MAX_LINE:
                 raise StudentError(diagnose_too_much(self.process.output))
-            left = deadline - time.monotonic()
-            if not self._selector.select(max(0.0, min(_TICK, left))):
-                if left <= 0.0:
+            remaining_seconds = deadline - time.monotonic()
+            if not self._selector.select(max(0.0, min(_TICK, remaining_seconds))):
+                if remaining_seconds <= 0.0:
                     raise self._no_answer(on_timeout, f"{timeout.seconds:.0f} s")
-                now = self.process.cpu_seconds()
-                before = now if before is None else before
-                if now - before > timeout.cpu_seconds:
+                cpu_seconds = self.process.cpu_seconds()
+                first_cpu_seconds = cpu_seconds if first_cpu_seconds is None else first_cpu_seconds
+                if cpu_seconds - first_cpu_seconds > timeout.cpu_seconds:
                     raise self._no_answer(on_timeout, f"{timeout.cpu_seconds:.0f} s of computing")
-                self._require_patience(time.monotonic() - began)
+                self._require_patience(time.monotonic() - start)
                 continue
             chunk = os.read(self._read_fd, 65536)
             if not chunk:
                 return b""
             self._buffer += chunk
-        waited = time.monotonic() - began
-        self._held += waited
-        patience.add_held(waited)
+        elapsed_seconds = time.monotonic() - start
+        self._waited_seconds += elapsed_seconds
+        patience.add_answer_time(elapsed_seconds)
         self._require_patience()
-        line, _, rest = bytes(self._buffer).partition(b"\n")
-        self._buffer = bytearray(rest)
+        line, _, next_lines = bytes(self._buffer).partition(b"\n")
+        self._buffer = bytearray(next_lines)
         return line + b"\n"
 
-    def _require_patience(self, waiting: float = 0.0) -> None:
-        """Raise a StudentError if programs have held the grading for too long, this one for `waiting` just now."""
-        if patience.is_held(waiting):
-            self._excuse()
-            if patience.is_held(waiting):
-                raise patience.too_slow()
+    def _require_patience(self, waiting_seconds: float = 0.0) -> None:
+        """Raise a StudentError if all answers, and the current one after `waiting_seconds`, have taken too long."""
+        if patience.is_too_slow(waiting_seconds):
+            self._deduct_starvation()
+            if patience.is_too_slow(waiting_seconds):
+                raise patience.too_slow_error()
 
-    def _excuse(self) -> None:
-        """Take back the time for which the program was ready to answer, and others did not let it run."""
-        waited = starvation.starved(self._at_start, starvation.look((self.process.innermost(),)))
-        excused = min(max(0.0, waited), self._held)
-        patience.add_held(self._excused - excused)
-        self._excused = excused
+    def _deduct_starvation(self) -> None:
+        """Deduct the time for which the program was ready to run, but other processes used the processor."""
+        starved = starvation.starved_seconds(self._use_at_start, starvation.measure_use((self.process.innermost(),)))
+        starved_seconds = min(max(0.0, starved), self._waited_seconds)
+        patience.add_answer_time(self._starved_seconds - starved_seconds)
+        self._starved_seconds = starved_seconds
 
-    def _no_answer(self, kind: Kind, waited: str) -> StudentError:
-        return StudentError(diagnose_no_answer(kind, waited, self.process.output))
+    def _no_answer(self, kind: Kind, duration: str) -> StudentError:
+        return StudentError(diagnose_no_answer(kind, duration, self.process.output))
 
     def _exit_reason(self) -> Diagnosis:
         self.process.wait(2.0)

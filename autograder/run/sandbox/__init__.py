@@ -1,10 +1,10 @@
-"""Running students' code where it can do no harm.
+"""Runs students' code where it can do no harm.
 
 A *worker sandbox* (`worker_sandbox.py`) contains the trusted worker of one submission, in its own user and network
-namespaces and with a scratch file system of limited size. In it, every piece of student code runs in a *sandbox*
-(`bubblewrap.py`): a process tree that sees a read-only system and the workspace, and that `process.py` watches against
-`Limits`. A fork server starts most programs, from an interpreter that has already done their imports
-(`autograder.run.fork_server`).
+namespaces and with a scratch file system of limited size. In it, all student code runs in a *sandbox* of its own
+(`bubblewrap.py`): a process tree that sees a read-only system and the workspace. `process.py` enforces its `Limits`. A
+fork server (`autograder.run.fork_server`) starts most programs, from an interpreter that has already imported their
+modules.
 
 Both exist at two isolation levels (`isolation.py`): `bubblewrap`, and the weaker `process` for machines without
 namespaces.

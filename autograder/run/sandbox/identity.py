@@ -1,7 +1,7 @@
-"""The user of each worker sandbox that root starts: a number that no account of the machine has.
+"""The user of each worker sandbox that root starts: a user id that no account of the machine has.
 
-Root owns the kernel's settings, and a user namespace does not change that: a process of root can write to them inside a
-namespace. Separate users also separate the worker sandboxes in everything that the kernel counts or allows by user.
+Root owns the kernel's settings, so a process of root can write to them even inside a user namespace. Different users
+also separate the worker sandboxes in everything that the kernel counts or permits per user.
 """
 
 from __future__ import annotations
@@ -14,34 +14,34 @@ from contextlib import closing, contextmanager, suppress
 
 from autograder.exceptions import IsolationError
 
-# Debian reserves these, and uses none. A container that maps no more than 65,536 users has them.
+# Debian reserves these user ids, but uses none. They also exist in a container that maps only 65,536 users.
 _USERS = range(47_000, 48_000)
 
 
 @contextmanager
 def ordinary_user() -> Iterator[int | None]:
-    """Claim a user for the duration of the block, or yield None if this process is not root.
+    """Claim a user for the duration of the block, and yield its id, or None if this process is not root.
 
-    A claim is a socket of the operating system's, which ends with its process.
+    A claim is an abstract socket, which the kernel removes when the claiming process ends.
 
     Raises:
-        IsolationError: all are claimed.
+        IsolationError: all users are claimed.
     """
     if os.geteuid() != 0:
         yield None
         return
-    with closing(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)) as claim:
-        yield next(user for user in _USERS if _claimed(claim, user))
+    with closing(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)) as lock_socket:
+        yield next(user for user in _USERS if _claim(lock_socket, user))
 
 
-def _claimed(claim: socket.socket, user: int) -> bool:
+def _claim(lock_socket: socket.socket, user: int) -> bool:
     if user == _USERS[-1]:
         raise IsolationError("root already runs a thousand worker sandboxes on this machine: wait until some end")
     with suppress(KeyError):
         pwd.getpwuid(user)
         return False
     try:
-        claim.bind(f"\0autograder-user-{user}")
+        lock_socket.bind(f"\0autograder-user-{user}")
     except OSError:
         return False  # used by another worker sandbox
     return True

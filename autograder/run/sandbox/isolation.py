@@ -1,4 +1,4 @@
-"""The isolation levels, and which of them this machine supports."""
+"""The isolation levels, and tests of which of them this machine supports."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from autograder.run.sandbox import bubblewrap
 from autograder.run.sandbox.identity import ordinary_user
 from autograder.run.sandbox.spec import Sandbox, View
 
-_FOUND = {"PATH": os.defpath, "PYTHONPATH": str(course_paths.ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+_TRIAL_ENVIRONMENT = {"PATH": os.defpath, "PYTHONPATH": str(course_paths.ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 class Isolation(str, Enum):
-    """How strongly students' code is isolated. Every result contains the name.
+    """How strongly students' code is isolated. Every result contains the name of the level.
 
-    `bubblewrap`: own process, mount, ipc, user and network namespaces.
+    `bubblewrap`: separate process, mount, ipc, user and network namespaces.
     `process`: only a process tree with limits. Students' code can read everything that the grader's user can read.
     """
 
@@ -33,7 +33,7 @@ class Isolation(str, Enum):
 
 @cache
 def best_isolation() -> Isolation:
-    """Return the strongest isolation level of this machine, after starting a sandbox inside a worker sandbox."""
+    """Return the strongest isolation level that this machine supports. This starts nested sandboxes as a trial."""
     return Isolation.BUBBLEWRAP if namespaces_failure() is None else Isolation.PROCESS
 
 
@@ -46,10 +46,14 @@ def namespaces_failure() -> str | None:
     with ordinary_user() as user:
         outer = bubblewrap.worker_sandbox(inner, View(), scratch=Path("/tmp/worker"), user=user)
         try:
-            done = subprocess.run(outer, capture_output=True, text=True, timeout=20, check=False)
+            completed = subprocess.run(outer, capture_output=True, text=True, timeout=20, check=False)
         except subprocess.TimeoutExpired:
             return "bubblewrap did not answer within 20 s"
-    return None if done.returncode == 0 else done.stderr.strip() or f"bwrap ended with status {done.returncode}"
+    return (
+        None
+        if completed.returncode == 0
+        else completed.stderr.strip() or f"bwrap ended with status {completed.returncode}"
+    )
 
 
 def gives_up_root(isolation: Isolation) -> bool:
@@ -65,18 +69,20 @@ def _root_failure(temporary: str) -> str | None:
     with ordinary_user() as user:
         assert user is not None
         trial = [sys.executable, "-c", "import os, sys, autograder.grade; os.chdir(sys.argv[1])", temporary]
-        command = [*bubblewrap.becoming(user), *trial]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, cwd="/", env=_FOUND)
-    return None if done.returncode == 0 else (done.stderr.strip().splitlines() or ["setpriv failed"])[-1]
+        command = [*bubblewrap.setpriv_command(user), *trial]
+        completed = subprocess.run(
+            command, capture_output=True, text=True, timeout=60, check=False, cwd="/", env=_TRIAL_ENVIRONMENT
+        )
+    return None if completed.returncode == 0 else (completed.stderr.strip().splitlines() or ["setpriv failed"])[-1]
 
 
 def require(isolation: Isolation) -> Isolation:
     """Return `isolation` if this machine supports it. Otherwise raise an IsolationError with the reason and a fix."""
     temporary = tempfile.gettempdir()
-    if gives_up_root(isolation) and (why := _root_failure(temporary)) is not None:
+    if gives_up_root(isolation) and (reason := _root_failure(temporary)) is not None:
         raise IsolationError(
-            f"with `--isolation process` root's gradings run as an ordinary user, which fails here: {why}. Let others "
-            f"read the grader (`chmod -R go+rX {course_paths.ROOT}`) and enter {temporary}, "
+            f"with `--isolation process` root's gradings run as an ordinary user, which fails here: {reason}. Let "
+            f"others read the grader (`chmod -R go+rX {course_paths.ROOT}`) and enter {temporary}, "
             "or start it as an ordinary user"
         )
     failure = namespaces_failure() if isolation is Isolation.BUBBLEWRAP else None

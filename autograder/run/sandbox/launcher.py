@@ -1,4 +1,4 @@
-"""Starting a sandboxed command at the isolation level that this process works in."""
+"""Starts a sandboxed command at the isolation level of this process."""
 
 from __future__ import annotations
 
@@ -27,12 +27,13 @@ from autograder.run.sandbox.spec import INTERPRETER, Sandbox
 
 ISOLATION_VARIABLE = "AUTOGRADER_ISOLATION"
 
-# Where a fork server finds the real ROS. No folder of a submission is among them: it runs outside every sandbox.
-_SEARCHED = (*WHEEL_BOOTSTRAP_VARIABLES, "PYTHONPATH", "AMENT_PREFIX_PATH")
+# Variables by which a fork server finds the real ROS. They must not name a submission's folder, because the server runs
+# outside every sandbox.
+_ROS_VARIABLES = (*WHEEL_BOOTSTRAP_VARIABLES, "PYTHONPATH", "AMENT_PREFIX_PATH")
 
 _lock = threading.Lock()
 _log = logging.getLogger(__name__)
-_servers: dict[str, ForkServer | None] = {}  # by their profiles; None where programs could not be forked
+_servers: dict[str, ForkServer | None] = {}  # by profile; None if its programs could not be forked
 
 
 def current_isolation() -> Isolation:
@@ -41,47 +42,47 @@ def current_isolation() -> Isolation:
 
 
 def restore_sigint() -> None:
-    """Let SIGINT end the processes that this one will start; call it in the main thread.
+    """Let SIGINT end the processes that this one will start. Call it in the main thread.
 
-    A shell's background job ignores SIGINT, and all its descendants inherit that: the same node would end on Ctrl-C
-    when it is graded in the foreground, and not when it is graded in the background.
+    A shell's background job ignores SIGINT, and all its descendants inherit that. So without this call, a node would
+    end on Ctrl-C if the grader runs in the foreground, but not if the grader runs in the background.
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def launch(command: list[str], spec: Sandbox, *, pass_fds: tuple[int, ...] = (), profile: str | None = None) -> Process:
-    """Start `command` in the sandbox that `spec` describes, as strongly as the current isolation level allows.
+    """Start `command` in the sandbox that `spec` describes, at the current isolation level.
 
     Args:
         command: the command to run.
         spec: the sandbox.
-        pass_fds: descriptors that it inherits.
-        profile: for a Python script, what its interpreter has imported before (`fork_server.profiles`).
+        pass_fds: descriptors that the command inherits.
+        profile: for a Python script, the profile of modules that are imported in advance (`fork_server.profiles`).
 
     Raises:
-        StudentError: the grading has no time left for programs. Running ones are stopped at that moment.
+        StudentError: the grading has no time left for programs. When its time is over, running programs are stopped.
     """
     patience.require()
     limits = replace(spec.limits, wall_seconds=patience.bounded(spec.limits.wall_seconds))
     spec = replace(spec, limits=limits)
     if profile is not None and current_isolation() is Isolation.BUBBLEWRAP:
-        process = _forked(command[1:], spec, pass_fds, profile)
+        process = _fork(command[1:], spec, pass_fds, profile)
         if process is not None:
             return process
-    return _started(command, spec, cgroup.make(spec.limits), pass_fds)
+    return _start(command, spec, cgroup.make(spec.limits), pass_fds)
 
 
 def warm_up(profile: str) -> None:
     """Start the fork server of a profile, if it is not running, so that it begins its imports."""
     with _lock:
         if profile not in _servers:
-            kept = {name: os.environ[name] for name in _SEARCHED if name in os.environ}
-            server = _servers[profile] = ForkServer(profile, {"PATH": os.defpath, **INTERPRETER, **kept})
+            ros_variables = {name: os.environ[name] for name in _ROS_VARIABLES if name in os.environ}
+            server = _servers[profile] = ForkServer(profile, {"PATH": os.defpath, **INTERPRETER, **ros_variables})
             atexit.register(server.close)
 
 
-def _started(
+def _start(
     command: list[str],
     spec: Sandbox,
     group: ControlGroup,
@@ -90,15 +91,15 @@ def _started(
     is_placeholder: bool = False,
 ) -> Process:
     contained = current_isolation() is Isolation.BUBBLEWRAP
-    with tempfile.TemporaryFile() as calls, ExitStack() as stack:
-        calls.write(seccomp.program())
-        calls.seek(0)
+    with tempfile.TemporaryFile() as filter_file, ExitStack() as stack:
+        filter_file.write(seccomp.program())
+        filter_file.seek(0)
         status: int | None = None
         if contained:
-            status, theirs = os.pipe()
-            stack.callback(os.close, theirs)
-            command = bubblewrap.sandbox(command, spec, calls.fileno(), theirs)
-            pass_fds = (*pass_fds, calls.fileno(), theirs)
+            status, write_end = os.pipe()
+            stack.callback(os.close, write_end)
+            command = bubblewrap.sandbox(command, spec, filter_file.fileno(), write_end)
+            pass_fds = (*pass_fds, filter_file.fileno(), write_end)
         else:
             command = [*bubblewrap.rlimits(spec.limits), *command]
         return Process(
@@ -116,17 +117,17 @@ def _started(
         )
 
 
-def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profile: str) -> Process | None:
-    """Fork a program; None where that cannot be, and it has not begun."""
+def _fork(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profile: str) -> Process | None:
+    """Fork a program. Return None if that is impossible; then the program has not run."""
     warm_up(profile)
     server = _servers[profile]
     if server is None:
         return None
     group = cgroup.make(spec.limits)
-    status, theirs = socket.socketpair()
+    status, sandbox_end = socket.socketpair()
     with status:
-        with theirs:
-            process = _started(PLACEHOLDER_COMMAND, spec, group, stdin=theirs.fileno(), is_placeholder=True)
+        with sandbox_end:
+            process = _start(PLACEHOLDER_COMMAND, spec, group, stdin=sandbox_end.fileno(), is_placeholder=True)
         try:
             status.settimeout(TIMEOUT)
             if not status.recv(1):
@@ -135,7 +136,7 @@ def _forked(command: list[str], spec: Sandbox, pass_fds: tuple[int, ...], profil
                 command,
                 dict(spec.environment),
                 str(spec.workdir),
-                bubblewrap.resources(spec.limits),
+                bubblewrap.resource_limits(spec.limits),
                 process.innermost(),
                 list(map(str, group.folders)),
                 list(pass_fds),

@@ -1,4 +1,4 @@
-"""The resource limits of each kind of program. Every limit of time, memory and size on a process tree is here."""
+"""The resource limits of each kind of program: all limits of time, memory and size on a process tree."""
 
 from __future__ import annotations
 
@@ -10,81 +10,84 @@ GIB = 1024 * MIB
 
 @dataclass(frozen=True)
 class Limits:
-    """Bounds on a process tree; going over one ends the tree."""
+    """Limits of a process tree, which is killed if it exceeds one."""
 
     wall_seconds: float = 120.0  # real time from start to end
     cpu_seconds: int = 120  # processor time of each process
-    memory: int = 1 * GIB  # bytes resident in the whole tree
+    memory: int = 1 * GIB  # resident bytes of the whole tree
     address_space: int = 8 * GIB  # bytes of virtual memory of each process
     threads: int = 256  # threads in the whole tree
-    file_size: int = 64 * MIB  # bytes of the largest file written
+    file_size: int = 64 * MIB  # bytes of each file that is written
     files: int = 50_000  # new files on the file systems that it can write to
-    # Descriptors of each process. The kernel lets a user of the machine have no more on their way than the sender may
-    # have open, and nearly all others may have 1,024.
+    # Descriptors of each process. A user of the machine can have only as many descriptors in transit between processes
+    # as the sender may have open, and most processes outside the sandbox may open 1,024.
     open_files: int = 512
     output: int = 1 * MIB  # bytes written to stdout and stderr together
     scratch: int = 64 * MIB  # bytes of the private /tmp
-    looks: int = 1  # at the tree, a quarter of a second apart, that find too much memory or threads before it is ended
+    # After how many consecutive measurements of too much memory or too many threads, a quarter of a second apart, the
+    # tree is killed.
+    excess_measurements: int = 1
 
     @property
     def tasks(self) -> int:
-        """Task limit of the kernel, well above `threads`: going over `threads` is seen and named first."""
+        """The kernel's limit on tasks. It is far above `threads`, so that too many threads are diagnosed first."""
         return self.threads * 4
 
 
 @dataclass(frozen=True)
 class TreeLimits:
-    """Bounds on the files that leave a sandbox."""
+    """Limits of the files that leave a sandbox."""
 
     names: int = 5000  # files, folders and links
-    size: int = 64 * MIB  # apparent bytes in all: holes count
-    depth: int = 32  # folders in each other
-    path: int = 1024  # bytes of a name with the folders that it is in
-    paths: int = 1 * MIB  # bytes of all of these
+    size: int = 64 * MIB  # apparent bytes in all, including holes
+    depth: int = 32  # nested folders
+    path: int = 1024  # bytes of a path
+    paths: int = 1 * MIB  # bytes of all paths
 
 
 @dataclass(frozen=True)
-class Received:
-    """Bounds on the messages that one harness takes from the topics of a student's programs."""
+class MessageLimits:
+    """Limits of the messages that one harness takes from the topics of a student's programs."""
 
     messages: int = 100_000
-    # Bytes on the wire, in all. Parsed, a list of small messages takes up to 60 times as much: less than a worker has.
+    # Bytes on the wire, in all. Parsed lists of small messages take up to 60 times as much memory, which a worker has.
     size: int = 64 * MIB
 
 
-# The harness bounds each wait for a node; the wall time is for a node that nothing waits for.
+# The harness limits each wait for a node. The wall time limits a node for which nothing waits.
 NODE = Limits(wall_seconds=600.0)
-# Processor time bounds a build, and does not depend on the machine's load; the wall time is for a build that waits.
+# What limits a build is its processor time, which does not depend on the machine's load. The wall time limits a build
+# that only waits.
 BUILD = Limits(wall_seconds=420.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
-# `colcon test` with a student's tests. Endless tests are run a second time, and both runs have to fit.
+# `colcon test` with a student's tests. Tests that do not end are run twice, and a grading must have time for both runs.
 COLCON_TEST = replace(BUILD, wall_seconds=150.0)
 # The submitted notebook's kernel.
 KERNEL = Limits(wall_seconds=180.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
-# A `ros2` command, such as `ros2 launch` with all that it starts.
+# A `ros2` command, such as `ros2 launch`, with everything that it starts.
 LAUNCH = Limits(wall_seconds=180.0, cpu_seconds=60, memory=2 * GIB, threads=1024)
 # One pytest run of a student's tests. Five at a time have to fit into a worker sandbox.
 TEST_RUN = Limits(wall_seconds=60.0, cpu_seconds=40, memory=768 * MIB)
 # Calls of a student's functions.
 CALLS = Limits(wall_seconds=30.0, cpu_seconds=30)
 # A whole worker sandbox: a trusted worker and all its descendants, for a grading or for a notebook's request.
-# Its sandboxes have bounds of their own, and a bomb in one of them grows beyond these until it is seen. It must not end
-# the worker, too: the worker sandbox has room for six at once, and time for their ends.
-GRADING_WORKER = Limits(wall_seconds=900.0, memory=6 * GIB, threads=8192, output=4 * MIB, looks=8)
+# The sandboxes in it have their own limits, which a fork bomb exceeds until it is detected. That must not end the
+# worker, so the worker sandbox has room for six fork bombs at once, and the time that it takes to kill them.
+GRADING_WORKER = Limits(wall_seconds=900.0, memory=6 * GIB, threads=8192, output=4 * MIB, excess_measurements=8)
 NOTEBOOK_WORKER = replace(GRADING_WORKER, wall_seconds=300.0)
-# A worker sandbox that only reads a submission.
+# A worker sandbox in which a submission is only read.
 READING_WORKER = Limits(wall_seconds=120.0, memory=2 * GIB, threads=64)
-# A worker sandbox of the verification, which lives while there is work. Each job has the wall time of GRADING_WORKER.
+# A worker sandbox of the verification, which runs many jobs. Each job has the wall time of GRADING_WORKER.
 VERIFICATION_WORKER = replace(GRADING_WORKER, wall_seconds=24 * 3600.0)
 WORKER_SCRATCH = 512 * MIB  # bytes of a worker sandbox's file system
-WORKER_OUT = 96 * MIB  # bytes of a grading's output folder, which no student's program can fill: room for RESULT_FILES
-WORKER_TMP = 64 * MIB  # bytes of a worker sandbox's /tmp, which no student's file is in
-INOTIFY_INSTANCES = 16  # of a whole worker sandbox; the kernel gives a user of the machine 128
+WORKER_OUT = 96 * MIB  # bytes of a grading's output folder, enough for RESULT_FILES; students' programs cannot fill it
+WORKER_TMP = 64 * MIB  # bytes of a worker sandbox's /tmp, which contains no files of students
+INOTIFY_INSTANCES = 16  # of a whole worker sandbox; by default, a user of the machine can have 128
 INOTIFY_WATCHES = 4096  # of a whole worker sandbox
-SIGNALS = 1024  # queued to each sandbox; the kernel counts them for the machine's user, too
-INSTALLED = TreeLimits()  # an install space after a build, which is copied for each grading, and kept
-# The same with its note, on the way from the builder to the cache and to the worker.
-KEPT = TreeLimits(names=5002, size=65 * MIB, depth=33, path=1088, paths=2 * MIB)
+SIGNALS = 1024  # queued signals of each sandbox; outside it, they also count for the machine's user
+INSTALLED = TreeLimits()  # an install space after a build, which is copied for each grading
+# An install space with its metadata, on the way from its builder to the cache and to the worker.
+CACHED = TreeLimits(names=5002, size=65 * MIB, depth=33, path=1088, paths=2 * MIB)
 SOURCES = TreeLimits(names=2000, size=16 * MIB)  # the interface packages of a submission
-RESULT_FILES = TreeLimits(names=200, depth=1)  # the files that a worker leaves: the result, its notebook, the pictures
-RECEIVED = Received()
+RESULT_FILES = TreeLimits(names=200, depth=1)  # the output files of a worker: the result, its notebook, the pictures
+RECEIVED_MESSAGES = MessageLimits()
 MESSAGE = 4 * MIB  # bytes of one message from a worker, except a list of files

@@ -1,4 +1,4 @@
-"""The line from a worker to the process that started it: its only way out of its sandbox."""
+"""The line from a worker to the process that started it: the worker's only way out of its sandbox."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ _lock = threading.Lock()
 _line: Connection | None = None
 
 
-def take(line: Connection) -> None:
+def set_line(connection: Connection) -> None:
     """Use a connection as this process's line."""
     global _line
-    _line = line
+    _line = connection
 
 
 @contextmanager
-def held() -> Iterator[Connection | None]:
-    """Have the line for one question and its answer; None in a process that has none."""
+def exclusive_line() -> Iterator[Connection | None]:
+    """Reserve the line for one request and its answer. Yield None in a process without a line."""
     with _lock:
         yield _line

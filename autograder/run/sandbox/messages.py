@@ -1,7 +1,7 @@
-"""Messages between a worker and the process that started it: JSON, and trees of files, each within bounds.
+"""Messages between a worker and the process that started it: JSON, and trees of files, each of limited size.
 
-A worker may have been taken over. Its messages are JSON or bytes, the receiver sets their maximum size beforehand, and
-paths lead only into the folder that the receiver names.
+Student code may have taken over a worker. So its messages are only JSON or bytes, the receiver sets their maximum size
+in advance, and paths lead only into the folder that the receiver names.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import Any
 
 from autograder.run.sandbox.limits import MESSAGE, TreeLimits
-from autograder.run.sandbox.trees import Entry, TreeError, survey
+from autograder.run.sandbox.trees import Entry, TreeError, list_tree
 
-_FRESH = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
+_NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
 class MessageError(Exception):
-    """A message is too large or not understood."""
+    """A message is too large or malformed."""
 
 
 def send_message(line: Connection, message: Mapping[str, Any]) -> None:
@@ -33,8 +33,8 @@ def receive_message(line: Connection) -> dict[str, Any]:
     """Receive a message of at most `limits.MESSAGE` bytes.
 
     Raises:
-        MessageError: it is larger, or not a JSON object.
-        EOFError: the sender is gone.
+        MessageError: the message is larger, or not a JSON object.
+        EOFError: the sender has closed the connection.
     """
     try:
         message = json.loads(_receive(line, MESSAGE))
@@ -57,13 +57,13 @@ def receive_tree(line: Connection, limits: TreeLimits) -> dict[Entry, bytes]:
     """Receive a tree: the content of each file, and the target of each link.
 
     Raises:
-        MessageError: it exceeds the limits, has a path that leads out of it, or differs from its list.
-        EOFError: the sender is gone.
+        MessageError: the tree exceeds the limits, has a path that leads out of it, or differs from its list.
+        EOFError: the sender has closed the connection.
     """
     try:
-        # JSON writes a byte of a path in six at most.
-        listed = json.loads(_receive(line, max(MESSAGE, 6 * limits.paths + 64 * limits.names)))
-        entries = [Entry(str(p), str(kind), bool(x), int(size)) for p, kind, x, size in listed]
+        # JSON needs at most six bytes for a byte of a path.
+        listing = json.loads(_receive(line, max(MESSAGE, 6 * limits.paths + 64 * limits.names)))
+        entries = [Entry(str(p), str(kind), bool(x), int(size)) for p, kind, x, size in listing]
     except (ValueError, TypeError, OverflowError, RecursionError):
         raise MessageError("a list of files is malformed") from None
     if len(entries) > limits.names or sum(entry.size for entry in entries) > limits.size:
@@ -80,21 +80,21 @@ def receive_tree(line: Connection, limits: TreeLimits) -> dict[Entry, bytes]:
 
 
 def write_received(tree: Mapping[Entry, bytes], root: Path) -> None:
-    """Write a tree that was received to a new or empty folder; nothing in it is overwritten, and no link followed."""
+    """Write a received tree to a new or empty folder, without overwriting anything or following links."""
     root.mkdir(parents=True, exist_ok=True)
     for entry in (entry for entry in tree if entry.kind != "link"):
         path = root / entry.path
         if entry.kind == "folder":
             path.mkdir()
             continue
-        with os.fdopen(os.open(path, _FRESH, 0o600), "wb") as file:
+        with os.fdopen(os.open(path, _NEW_FILE, 0o600), "wb") as file:
             file.write(tree[entry])
             os.fchmod(file.fileno(), 0o755 if entry.executable else 0o644)
-    for entry in (entry for entry in tree if entry.kind == "link"):  # last, so that nothing is written through one
+    for entry in (entry for entry in tree if entry.kind == "link"):  # last, so that nothing is written through a link
         (root / entry.path).symlink_to(os.fsdecode(tree[entry]))
     deepest = max((entry.path.count("/") for entry in tree), default=0)
     try:
-        survey(root, TreeLimits(names=len(tree), size=sum(map(len, tree.values())), depth=deepest + 1))
+        list_tree(root, TreeLimits(names=len(tree), size=sum(map(len, tree.values())), depth=deepest + 1))
     except TreeError as error:
         raise MessageError(f"a tree contains {error}") from None
 
@@ -103,10 +103,10 @@ def _is_plain(entry: Entry, limits: TreeLimits) -> bool:
     parts = entry.path.split("/")
     try:
         is_short = len(os.fsencode(entry.path)) <= limits.path and len(parts) <= limits.depth + 1
-    except UnicodeEncodeError:  # no name of a file
+    except UnicodeEncodeError:  # not a valid file name
         return False
-    known = entry.kind in ("file", "folder", "link") and entry.size >= 0 and "\0" not in entry.path
-    return known and is_short and not {"", ".", ".."}.intersection(parts)
+    is_known = entry.kind in ("file", "folder", "link") and entry.size >= 0 and "\0" not in entry.path
+    return is_known and is_short and not {"", ".", ".."}.intersection(parts)
 
 
 def _receive_file(line: Connection, size: int) -> bytes:
@@ -116,10 +116,10 @@ def _receive_file(line: Connection, size: int) -> bytes:
     return data
 
 
-def _receive(line: Connection, most: int) -> bytes:
+def _receive(line: Connection, max_size: int) -> bytes:
     try:
-        return line.recv_bytes(most)
+        return line.recv_bytes(max_size)
     except EOFError:
         raise
     except OSError:
-        raise MessageError(f"a message has more than {most} bytes") from None
+        raise MessageError(f"a message has more than {max_size} bytes") from None

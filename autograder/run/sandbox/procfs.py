@@ -1,4 +1,4 @@
-"""Reads the kernel's data about processes in /proc, see proc(5)."""
+"""Reads the kernel's data about processes from /proc; see proc(5)."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 _PAGE = os.sysconf("SC_PAGE_SIZE")
-_TICKS_A_SECOND = os.sysconf("SC_CLK_TCK")
-TICK = 1.0 / _TICKS_A_SECOND  # s
+_TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK")
+TICK = 1.0 / _TICKS_PER_SECOND  # s; the resolution of the kernel's times of processes
 
 
 @dataclass(frozen=True)
@@ -20,19 +20,19 @@ class Tree:
     pids: tuple[int, ...]
     threads: int
     memory: int
-    largest: int  # memory of the process that has most
+    largest: int  # memory of the largest process
 
 
-def measure(*roots: int, most: int = sys.maxsize) -> Tree:
-    """Measure the trees below `roots`: process ids, threads, resident bytes.
+def measure(*roots: int, max_threads: int = sys.maxsize) -> Tree:
+    """Measure `roots` and their descendants: process ids, threads, resident bytes.
 
-    Processes that vanish are left out. A tree of more than `most` threads is not measured to its end: a fork bomb grows
-    faster than it can be counted.
+    Processes that end meanwhile are left out. The measurement stops after `max_threads` threads, because a fork bomb
+    grows faster than its threads can be counted.
     """
     pids: list[int] = []
     threads = memory = largest = 0
     pending = list(roots)
-    while pending and threads <= most:
+    while pending and threads <= max_threads:
         pid = pending.pop()
         try:
             tasks = os.listdir(f"/proc/{pid}/task")
@@ -49,23 +49,23 @@ def measure(*roots: int, most: int = sys.maxsize) -> Tree:
 
 
 def start_seconds(pid: int) -> float | None:
-    """Return when a process was started, in seconds since the boot, rounded down to a `TICK`; None if it has ended."""
+    """Return when a process started, in s since boot, rounded down to a `TICK`; None if it has ended."""
     try:
-        return int(_stat(pid)[19]) / _TICKS_A_SECOND  # starttime
+        return int(_stat(pid)[19]) / _TICKS_PER_SECOND  # starttime
     except OSError:
         return None
 
 
 @dataclass(frozen=True)
 class CpuTime:
-    """The processor time, in s, of a process, and of those children that have ended and that it has waited for."""
+    """The processor time, in s, of a process, and of those of its ended children for which it has waited."""
 
     own: float = 0.0
     reaped: float = 0.0
 
 
 def cpu_times(pids: Iterable[int]) -> dict[int, CpuTime]:
-    """Return the processor time by process; those that vanish are left out."""
+    """Return the processor times by process, without processes that end meanwhile."""
     times = {}
     for pid in pids:
         with suppress(OSError):
@@ -75,20 +75,20 @@ def cpu_times(pids: Iterable[int]) -> dict[int, CpuTime]:
 
 
 def cpu_seconds(pids: Iterable[int]) -> float:
-    """Return the processor time that processes have used so far; those that vanish are left out."""
+    """Return the processor time that processes have used so far, without processes that end meanwhile."""
     return sum(time.own for time in cpu_times(pids).values())
 
 
 @dataclass(frozen=True)
 class ThreadTime:
-    """For how many seconds a thread has run, and has waited for a processor, ready to run."""
+    """How many seconds a thread has run, and has waited for a processor."""
 
     ran: float = 0.0
     waited: float = 0.0
 
 
 def thread_times(pids: Iterable[int]) -> dict[int, ThreadTime]:
-    """Return the times by thread; threads that vanish are left out.
+    """Return the times by thread, without threads that end meanwhile.
 
     See schedstat in the kernel's Documentation/scheduler/sched-stats.rst.
     """
@@ -103,7 +103,7 @@ def thread_times(pids: Iterable[int]) -> dict[int, ThreadTime]:
 
 
 def parent(pid: int) -> int | None:
-    """Return the parent of a process; None if it has ended."""
+    """Return the process id of a process's parent, or None if the process has ended."""
     try:
         return int(_stat(pid)[1])  # ppid
     except OSError:
@@ -111,12 +111,12 @@ def parent(pid: int) -> int | None:
 
 
 def children(pid: int) -> list[int]:
-    """Return the processes that a process's first thread has started."""
+    """Return the children that a process's first thread has started."""
     return _started_by(pid, pid)
 
 
 def name(pid: int) -> str:
-    """Return the name of a process's program, at most 15 characters; empty if it has ended."""
+    """Return at most 15 characters of the name of a process's program, or an empty string if the process has ended."""
     try:
         return _read(f"/proc/{pid}/comm").decode(errors="replace").strip()
     except OSError:
@@ -124,7 +124,7 @@ def name(pid: int) -> str:
 
 
 def _started_by(pid: int, task: int | str) -> list[int]:
-    """Return the processes that one thread of a process has started; none if it is gone."""
+    """Return the processes that a thread of a process has started, or nothing if the thread has ended."""
     try:
         return list(map(int, _read(f"/proc/{pid}/task/{task}/children").split()))
     except OSError:
@@ -132,12 +132,12 @@ def _started_by(pid: int, task: int | str) -> list[int]:
 
 
 def _stat(pid: int) -> list[bytes]:
-    """Return the fields of a process after its name, the third field of proc_pid_stat(5) first."""
+    """Return the fields after the name in a process's `stat` file, beginning with the third of proc_pid_stat(5)."""
     return _read(f"/proc/{pid}/stat").rpartition(b")")[2].split()
 
 
 def _read(path: str) -> bytes:
-    """Read a small file of /proc; this is done often, and a `Path` would take three times as long."""
+    """Read a small file of /proc. This happens often, and a `Path` would take three times as long."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         return os.read(descriptor, 65536)

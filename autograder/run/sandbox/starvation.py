@@ -1,8 +1,8 @@
-"""Measures for how long others kept programs from running, without what the submission itself has used.
+"""Measures how long processes outside a submission kept its programs from running.
 
-The kernel says how long a thread has waited for a processor, but not who had it. While a thread waits, its processor
-runs something else. If that belongs to the submission, its processor time grows by as much as the thread waits. So the
-wait that remains without that time is the machine's.
+The kernel reports how long a thread has waited for a processor, but not which process used the processor meanwhile. If
+that process belongs to the submission, its processor time grows by as much as the thread waits. So other processes
+caused the waiting time that exceeds the submission's processor time.
 """
 
 from __future__ import annotations
@@ -14,28 +14,30 @@ from dataclasses import dataclass
 from autograder.run.sandbox import procfs
 from autograder.run.sandbox.procfs import CpuTime, ThreadTime
 
-_MOST_THREADS = 10_000  # that are counted, well above what a program may have
+_MAX_THREADS = 10_000  # how many threads are counted, far more than a program may have
 
 
 @dataclass(frozen=True)
-class Use:
-    """The times of some programs' threads, and of all processes of this grading, at one instant."""
+class CpuUse:
+    """The processor times of some programs' threads, and of all processes of this grading, at one instant."""
 
     threads: Mapping[int, ThreadTime]
     processes: Mapping[int, CpuTime]
 
 
-def look(pids: Iterable[int]) -> Use:
-    """Return the times of programs, and of this process with all that it has started and has not ended."""
+def measure_use(pids: Iterable[int]) -> CpuUse:
+    """Measure the threads of programs, and this process with all its descendants."""
     pids = tuple(pids)
-    return Use(procfs.thread_times(pids), procfs.cpu_times(procfs.measure(os.getpid(), *pids, most=_MOST_THREADS).pids))
+    return CpuUse(
+        procfs.thread_times(pids), procfs.cpu_times(procfs.measure(os.getpid(), *pids, max_threads=_MAX_THREADS).pids)
+    )
 
 
-def used(before: Use, after: Use) -> float:
-    """Return the processor time, in s, that this grading's processes used between two looks.
+def used_seconds(before: CpuUse, after: CpuUse) -> float:
+    """Return the processor time, in s, that this grading's processes used between two measurements.
 
-    The time of a process that has ended is found with its parent. It is lost if the parent ignores the ends of its
-    children, except what was seen of it.
+    The kernel adds the time of a process that has ended to that of its parent. If the parent does not wait for its
+    children, only their time until the first measurement is known.
     """
     old, new = before.processes, after.processes
     running = sum(time.own - old.get(pid, CpuTime()).own for pid, time in new.items())
@@ -44,12 +46,12 @@ def used(before: Use, after: Use) -> float:
     return max(0.0, running) + max(0.0, ended)
 
 
-def starved(before: Use, after: Use) -> float:
-    """Return the longest time, in s, for which others kept one of the programs' threads from running."""
-    total = used(before, after)
+def starved_seconds(before: CpuUse, after: CpuUse) -> float:
+    """Return the longest time, in s, for which other processes kept a thread of the programs from running."""
+    total = used_seconds(before, after)
 
-    def of(thread: int, now: ThreadTime) -> float:
-        then = before.threads.get(thread, ThreadTime())
-        return now.waited - then.waited - max(0.0, total - (now.ran - then.ran))
+    def starved_by_others(thread: int, current: ThreadTime) -> float:
+        previous = before.threads.get(thread, ThreadTime())
+        return current.waited - previous.waited - max(0.0, total - (current.ran - previous.ran))
 
-    return max((of(thread, now) for thread, now in after.threads.items()), default=0.0)
+    return max((starved_by_others(thread, current) for thread, current in after.threads.items()), default=0.0)

@@ -12,24 +12,24 @@ from pathlib import Path
 
 from autograder import course_paths
 
-_NOT_OURS = re.compile(r"/(variants|versions)/")  # below a chapter's checks: answers, which no grader imports
+_ANSWERS = re.compile(r"/(variants|versions)/")  # answers among a chapter's checks, which the grader does not import
 
 
 @cache
 def compile_grader() -> None:
-    """Compile the grader's modules, once for a process; where they cannot be written to, each worker does it anew."""
+    """Compile the grader's modules once per process. If their folder is read-only, each worker compiles them itself."""
     for folder in (course_paths.ROOT / "autograder", course_paths.ROOT / "sim", course_paths.CHECKS):
         if os.access(folder, os.W_OK):
-            compileall.compile_dir(folder, quiet=2, rx=_NOT_OURS)
+            compileall.compile_dir(folder, quiet=2, rx=_ANSWERS)
 
 
 @cache
 def fonts() -> Path | None:
-    """Return matplotlib's list of this machine's fonts, which takes a second to make; None where none can be made."""
+    """Return matplotlib's list of this machine's fonts, which takes a second to create, or None if that fails."""
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path(os.environ.get("HOME", "/nonexistent"), ".cache")).absolute()
     pattern = "matplotlib/fontlist-*.json"
     if not any(folder.glob(pattern)):
-        # `python -c` imports from the folder it is started in, and that may be a submission.
+        # `python -c` imports from its working folder, which may be a submission.
         command = [sys.executable, "-c", "import matplotlib.font_manager"]
         variables = {**os.environ, "XDG_CACHE_HOME": str(folder)}
         subprocess.run(command, cwd="/", env=variables, capture_output=True, check=False)

@@ -1,9 +1,9 @@
-"""Reads a submission into memory, and finds the part that counts. Nothing in it is executed here.
+"""Reads a submission into memory, and finds the part that counts. It executes nothing.
 
 A submission is the folder of an assignment (the notebook and `ws/` beside it), a zip or tar archive of such a folder,
-the notebook alone, or a source tree with `src/`. It may be nested, in an archive in an archive, under another name and
-beside other files. Links, devices, absolute paths and parent paths are refused, or left out if they are not needed.
-Sizes, counts and depths are limited. Files that tools leave behind are ignored.
+the notebook alone, or a source tree with `src/`. It may be in nested folders or archives, under another name and beside
+other files. Links, devices, absolute paths and paths with `..` are refused, or skipped if they are not needed. The
+number, size and depth of files are limited. Files that tools leave behind are ignored.
 
     path -> reading -> files -> answer (which notebook and source tree) -> counting (files in `ws/src`, else cells)
 """
@@ -18,7 +18,7 @@ from pathlib import Path, PurePosixPath
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.submission.intake.answer import Answer, broken_sentence, find_answer
-from autograder.submission.intake.counting import Counted, count, merge, read_code, with_given
+from autograder.submission.intake.counting import GradedPackages, count, merge, read_code, with_given
 from autograder.submission.intake.exercises import SOURCE, exercises_of
 from autograder.submission.intake.files import (
     MAX_DEPTH,
@@ -27,14 +27,14 @@ from autograder.submission.intake.files import (
     MAX_PATH_BYTES,
     MAX_TOTAL_BYTES,
     MAX_WRAPPED_BYTES,
-    LeftOut,
+    SkippedFile,
     SubmittedFile,
     digest,
     unsafe,
     write_tree,
 )
 from autograder.submission.intake.reading import read_contents, read_source_folder
-from autograder.submission.reading import reading as door
+from autograder.submission.reading import reading as student_data
 
 __all__ = [
     "MAX_DEPTH",
@@ -43,19 +43,19 @@ __all__ = [
     "MAX_PATH_BYTES",
     "MAX_TOTAL_BYTES",
     "MAX_WRAPPED_BYTES",
-    "LeftOut",
+    "SkippedFile",
     "Submission",
     "SubmittedFile",
     "detect_layout",
+    "graded_packages",
     "read_files",
     "read_packages",
     "read_submission",
-    "what_counts",
     "with_given_packages",
     "write_tree",
 ]
-TIMESTAMP = PurePosixPath("timestamp.txt")  # of nbgrader
-MAX_LISTED = 20  # names of files that were not used
+TIMESTAMP = PurePosixPath("timestamp.txt")  # written by nbgrader
+MAX_LISTED = 20  # unused files whose names are listed
 
 
 @dataclass(frozen=True)
@@ -64,21 +64,21 @@ class Submission:
 
     notebook: bytes | None  # content of the assignment's notebook, or None
     source: tuple[SubmittedFile, ...]  # files below `ws/src`, with paths relative to it
-    # Files beside the notebook that it may read, with paths relative to the assignment's folder.
+    # Other files that the notebook may read, with paths relative to the assignment's folder.
     extra: tuple[SubmittedFile, ...]
-    sha256: str  # digest of all files' paths and contents, in hexadecimal digits
-    graded_sha256: str  # digest of the files that a grading reads: a folder and a zip of it have the same
-    # The packages that are graded, with paths relative to `ws/src`; None if the notebook has to make some of them.
+    sha256: str  # hexadecimal digest of the paths and contents of all files
+    graded_sha256: str  # digest of the files that a grading reads; the same for a folder and for a zip of it
+    # The packages that are graded, with paths relative to `ws/src`; None if the notebook has to create some of them.
     packages: tuple[SubmittedFile, ...] | None = None
     notices: tuple[str, ...] = ()  # sentences for the student about the files that count
-    unused: tuple[str, ...] = ()  # files that do not count, by their paths
+    unused: tuple[str, ...] = ()  # paths of files that do not count, or sentences about skipped files
 
 
 def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
-    """Read the files in `root`/src, a workspace that a student's code may have changed, with paths relative to it.
+    """Read the files in `root`/src, with paths relative to it. A student's code may have changed the workspace `root`.
 
     Raises:
-        StudentError: `src` is not a folder, or holds something unsafe.
+        StudentError: `src` is not a folder, or contains unsafe files.
     """
     for folder in (root, root / "src"):
         try:
@@ -98,49 +98,52 @@ def read_submission(path: Path, assignment: str) -> Submission:
         UsageError: `path` does not exist.
         StudentError: the submission is unsafe, unreadable or unclear, or has neither the notebook nor a package.
     """
-    with door("Your submission"):
+    with student_data("Your submission"):
         contents = read_contents(path, assignment)
-        return detect_layout(contents.files, assignment, contents.left_out)
+        return detect_layout(contents.files, assignment, contents.skipped)
 
 
 def read_files(path: Path, assignment: str) -> list[SubmittedFile]:
-    """Read all files of a submission, with paths below its root. Args and errors are those of `read_submission`."""
-    with door("Your submission"):
+    """Read all files of a submission, with paths relative to its root.
+
+    The arguments and errors are those of `read_submission`.
+    """
+    with student_data("Your submission"):
         contents = read_contents(path, assignment)
-        detect_layout(contents.files, assignment, contents.left_out)
+        detect_layout(contents.files, assignment, contents.skipped)
         return contents.files
 
 
-def detect_layout(files: Sequence[SubmittedFile], assignment: str, left_out: Sequence[LeftOut] = ()) -> Submission:
-    """Find the notebook and the packages among a submission's files, whose paths are below its root.
+def detect_layout(files: Sequence[SubmittedFile], assignment: str, skipped: Sequence[SkippedFile] = ()) -> Submission:
+    """Find the notebook and the packages among a submission's files, whose paths are relative to its root.
 
     Raises:
-        StudentError: it has neither the notebook nor a package, they are unclear or unsafe, or a file and a folder
-            have the same path.
+        StudentError: the submission has neither the notebook nor a package, is unclear or unsafe, or contains a file
+            and a folder with the same path.
     """
     _require_tree(files)
     exercises = exercises_of(assignment)
-    answer = find_answer(files, left_out, assignment, exercises)
+    answer = find_answer(files, skipped, assignment, exercises)
     source = tuple(answer.tree.files.values()) if answer.tree is not None else ()
     extra = _extra(files, answer)
     notebook = None if answer.notebook is None else answer.notebook.file.data
-    counted = Counted(source)
+    graded = GradedPackages(source)
     if answer.notebook is not None and answer.notebook.broken:
-        notebook, counted = None, Counted(source, (f"{broken_sentence(answer.notebook)} ws/src counts.",))
+        notebook, graded = None, GradedPackages(source, (f"{broken_sentence(answer.notebook)} ws/src counts.",))
     elif answer.notebook is not None:
-        counted = Counted(None)
+        graded = GradedPackages(None)
         if exercises is not None:
             code = read_code(answer.notebook.cells, exercises)
-            counted = count({file.path: file for file in source}, code, exercises)
+            graded = count({file.path: file for file in source}, code, exercises)
     return Submission(
         notebook,
         source,
         extra,
         digest(files),
-        digest(_graded(notebook, source, extra, assignment) if counted.packages is None else counted.packages),
-        counted.packages,
-        counted.notices,
-        _unused(files, left_out, answer, assignment),
+        digest(_graded_files(notebook, source, extra, assignment) if graded.packages is None else graded.packages),
+        graded.packages,
+        graded.notices,
+        _unused_names(files, skipped, answer, assignment),
     )
 
 
@@ -151,16 +154,16 @@ def with_given_packages(submission: Submission, assignment: str) -> tuple[Submit
     return tuple((source if exercises is None else with_given(source, exercises)).values())
 
 
-def what_counts(submission: Submission, written: Sequence[SubmittedFile], assignment: str) -> Counted:
-    """Return the part of a submission that counts, after its notebook has written the packages `written`."""
+def graded_packages(submission: Submission, written: Sequence[SubmittedFile], assignment: str) -> GradedPackages:
+    """Return the packages that are graded, after the notebook has written the files `written` to its `ws/src`."""
     exercises = exercises_of(assignment)
     if exercises is None:
-        return Counted(tuple(written))
+        return GradedPackages(tuple(written))
     return merge({file.path: file for file in submission.source}, written, exercises)
 
 
 def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFile, ...]:
-    """Return the files beside the notebook that it may read."""
+    """Return the files besides the notebook and the source tree that the notebook may read."""
     if answer.notebook is not None:
         root = answer.notebook.root
     elif answer.tree is not None:
@@ -170,43 +173,49 @@ def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFil
         if file.path == root or not file.path.is_relative_to(root):
             continue
         path = file.path.relative_to(root)
-        is_source = answer.tree is not None and answer.tree.holds(file.path)
+        is_source = answer.tree is not None and answer.tree.contains(file.path)
         is_notebook = answer.notebook is not None and file.path == answer.notebook.file.path
         if not (is_source or is_notebook or path.parts[0] in ("ws", "src")):
             extra.append(SubmittedFile(path, file.data, file.executable))
     return tuple(extra)
 
 
-def _graded(
+def _graded_files(
     notebook: bytes | None, source: Sequence[SubmittedFile], extra: Sequence[SubmittedFile], assignment: str
 ) -> list[SubmittedFile]:
-    """Return the files for a grading that runs the notebook, in one layout for all submissions."""
+    """Return the files that a grading with the notebook reads, in the same layout for all submissions."""
     graded = [*extra, *(replace(file, path=SOURCE / file.path) for file in source)]
     if notebook is not None:
         graded.append(SubmittedFile(PurePosixPath(f"{assignment}.ipynb"), notebook))
     return graded
 
 
-def _unused(
+def _unused_names(
     files: Sequence[SubmittedFile],
-    left_out: Sequence[LeftOut],
+    skipped: Sequence[SkippedFile],
     answer: Answer,
     assignment: str,
 ) -> tuple[str, ...]:
-    """Return the names of files that do not count, with a reason if they were not read."""
+    """Return the names of files that do not count, with the reason for each skipped file."""
     notebook = answer.notebook.file.path if answer.notebook is not None else None
     root = notebook.parent if notebook is not None else answer.tree.root if answer.tree is not None else PurePosixPath()
     exercises = exercises_of(assignment)
-    released = exercises.beside if exercises is not None else frozenset()
+    released_paths = exercises.other_files if exercises is not None else frozenset()
     names = []
     for file in files:
-        own = file.path.relative_to(root) if file.path.is_relative_to(root) else file.path
-        is_source = answer.tree is not None and answer.tree.holds(file.path)
-        if not (is_source or file.path == notebook or own in released or own.parts[0] == "ws" or own == TIMESTAMP):
+        relative_path = file.path.relative_to(root) if file.path.is_relative_to(root) else file.path
+        is_source = answer.tree is not None and answer.tree.contains(file.path)
+        if not (
+            is_source
+            or file.path == notebook
+            or relative_path in released_paths
+            or relative_path.parts[0] == "ws"
+            or relative_path == TIMESTAMP
+        ):
             names.append(str(file.path))
-    names = sorted(names) + [each.sentence for each in left_out]
-    more = len(names) - MAX_LISTED
-    return tuple(names if more <= 0 else [*names[:MAX_LISTED], f"{more} more"])
+    names = sorted(names) + [file.sentence for file in skipped]
+    unlisted_count = len(names) - MAX_LISTED
+    return tuple(names if unlisted_count <= 0 else [*names[:MAX_LISTED], f"{unlisted_count} more"])
 
 
 def _require_tree(files: Sequence[SubmittedFile]) -> None:

@@ -1,7 +1,7 @@
-"""Finds the answer in a submission: the notebook and the source tree that count, if there may be several.
+"""Finds the answer in a submission: the notebook and the source tree that count.
 
-A candidate counts if its answers hold those of each other one: an untouched release never wins over an edited copy, and
-of equal ones either counts. Where two candidates answer differently, the submission is unclear.
+If a submission contains several candidates, the one whose answers include the answers of all others counts. So an
+edited copy always wins over an untouched release. If two candidates have different answers, the submission is unclear.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from autograder import course_paths
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.submission.intake.exercises import SOURCE, Exercises, is_stub
-from autograder.submission.intake.files import LeftOut, SubmittedFile, unsafe
+from autograder.submission.intake.files import SkippedFile, SubmittedFile, unsafe
 from autograder.submission.intake.names import is_notebook, names_assignment
 from autograder.submission.intake.notebooks import Cell, read_cells
 from autograder.submission.intake.writefile import same_text, written_file
@@ -30,22 +30,22 @@ Answers = Mapping[str, str]
 
 @dataclass(frozen=True)
 class Tree:
-    """A source tree: the folder whose entries are packages, the folder of the submission, and its files."""
+    """A source tree, a folder with packages in it."""
 
-    home: PurePosixPath
-    root: PurePosixPath
-    packages: frozenset[PurePosixPath]  # the folders of packages, where these alone belong to it
+    folder: PurePosixPath  # the folder with the packages, such as `ws/src`
+    root: PurePosixPath  # the assignment's folder, which contains `folder`
+    packages: frozenset[PurePosixPath]  # the folders of its packages if only they belong to it; else empty
     files: Mapping[PurePosixPath, SubmittedFile]
     answers: Answers
 
-    def holds(self, path: PurePosixPath) -> bool:
-        """Return whether a file of the submission is in it."""
-        return not (self.packages or {self.home}).isdisjoint((path, *path.parents))
+    def contains(self, path: PurePosixPath) -> bool:
+        """Return whether a file of the submission belongs to the tree."""
+        return not (self.packages or {self.folder}).isdisjoint((path, *path.parents))
 
 
 @dataclass(frozen=True)
 class Notebook:
-    """A notebook: its file, its cells, and its answers. `broken` says why it cannot be read."""
+    """A notebook: its file, its cells and its answers. `broken` is the reason why it cannot be read, or empty."""
 
     file: SubmittedFile
     cells: tuple[Cell, ...]
@@ -54,35 +54,37 @@ class Notebook:
 
     @property
     def root(self) -> PurePosixPath:
-        """Its folder."""
+        """The folder that contains the notebook."""
         return self.file.path.parent
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The part of a submission that counts. Either may be missing; `broken` is a notebook that cannot be read."""
+    """The part of a submission that counts. The notebook or the tree may be missing, and the notebook may be broken."""
 
     notebook: Notebook | None
     tree: Tree | None
 
 
 def find_answer(
-    files: Sequence[SubmittedFile], left_out: Sequence[LeftOut], assignment: str, exercises: Exercises | None
+    files: Sequence[SubmittedFile], skipped: Sequence[SkippedFile], assignment: str, exercises: Exercises | None
 ) -> Answer:
     """Find the answer among the files of a submission.
 
     Raises:
-        StudentError: it has none, it cannot be read, or two candidates answer differently.
+        StudentError: the submission contains no answer, one that cannot be read, or several different ones.
     """
     trees = _trees(files, assignment, exercises)
     notebooks = _notebooks(files, trees, assignment, exercises)
     readable, broken = [n for n in notebooks if not n.broken], [n for n in notebooks if n.broken]
     roots = {notebook.root for notebook in readable}
-    tree = _only(trees, lambda tree: (tree.root not in roots, len(tree.home.parts), str(tree.home)), "source trees")
-    for each in left_out:
-        if _is_needed(each.path, tree):
-            raise unsafe(each.sentence)
-    whole = tree is not None and exercises is not None and exercises.is_whole(_data(tree))
+    tree = _choose(
+        trees, lambda tree: (tree.root not in roots, len(tree.folder.parts), str(tree.folder)), "source trees"
+    )
+    for file in skipped:
+        if _is_needed(file.path, tree):
+            raise unsafe(file.sentence)
+    is_complete = tree is not None and exercises is not None and exercises.is_complete(_contents_of(tree))
 
     def preference(notebook: Notebook) -> tuple[bool, bool, int, str]:
         path = notebook.file.path
@@ -93,18 +95,18 @@ def find_answer(
             str(path),
         )
 
-    if whole and readable:
+    if is_complete and readable:
         return Answer(min(readable, key=preference), tree)
-    notebook = _only(readable, preference, "notebooks")
-    edited = (tree is not None and tree.answers) or (notebook is not None and notebook.answers)
-    if broken and not whole and not (notebook is not None and notebook.answers):
+    notebook = _choose(readable, preference, "notebooks")
+    is_edited = (tree is not None and tree.answers) or (notebook is not None and notebook.answers)
+    if broken and not is_complete and not (notebook is not None and notebook.answers):
         raise StudentError(Diagnosis(Kind.UNREADABLE, broken_sentence(broken[0])))
-    doubtful = next((each for each in left_out if each.may_hold_answer), None)
-    if not edited and doubtful is not None:
-        raise StudentError(Diagnosis(Kind.UNREADABLE, f"{doubtful.sentence}."))
+    possible_answer = next((file for file in skipped if file.may_contain_answer), None)
+    if not is_edited and possible_answer is not None:
+        raise StudentError(Diagnosis(Kind.UNREADABLE, f"{possible_answer.sentence}."))
     if notebook is None and tree is None:
-        if left_out:
-            raise unsafe(left_out[0].sentence)
+        if skipped:
+            raise unsafe(skipped[0].sentence)
         sentence = (
             f"There is nothing to grade: neither {assignment}.ipynb nor a ws/src folder with a package. Hand in the "
             "assignment's whole folder."
@@ -122,26 +124,26 @@ def broken_sentence(notebook: Notebook) -> str:
 
 
 def _is_needed(path: PurePosixPath, tree: Tree | None) -> bool:
-    """Return whether an unread file belongs to the source tree, or hides it."""
+    """Return whether a skipped file belongs to the source tree, or may be the folder of a source tree."""
     if tree is not None:
-        return path.is_relative_to(tree.home)
+        return path.is_relative_to(tree.folder)
     return path.name in ("ws", "src") or "src" in path.parts
 
 
-C = TypeVar("C", Tree, Notebook)
+Candidate = TypeVar("Candidate", Tree, Notebook)
 
 
-def _only(candidates: Sequence[C], preference: Callable[[C], object], what: str) -> C | None:
-    """Return the candidate that counts, or None. Raises StudentError if several could."""
+def _choose(candidates: Sequence[Candidate], preference: Callable[[Candidate], object], label: str) -> Candidate | None:
+    """Return the candidate that counts, or None without candidates. Raises StudentError if several could count."""
     fullest = [c for c in candidates if not any(c.answers.items() < other.answers.items() for other in candidates)]
     different = [c for c in fullest if c.answers != fullest[0].answers]
     if different:
         outermost = min(fullest, key=lambda c: len(c.root.parts))
         others = [c for c in fullest if c.answers != outermost.answers]
         if not all(c.root != outermost.root and c.root.is_relative_to(outermost.root) for c in others):
-            names = sorted({str(c.file.path if isinstance(c, Notebook) else c.home) for c in fullest})
+            names = sorted({str(c.file.path if isinstance(c, Notebook) else c.folder) for c in fullest})
             sentence = (
-                f"The submission is unclear: it holds {len(names)} {what} with different answers, "
+                f"The submission is unclear: it holds {len(names)} {label} with different answers, "
                 f"{', '.join(names[:5])}. Hand in the one that counts, without the others."
             )
             raise StudentError(Diagnosis(Kind.UNCLEAR, sentence))
@@ -150,44 +152,44 @@ def _only(candidates: Sequence[C], preference: Callable[[C], object], what: str)
 
 
 def _trees(files: Sequence[SubmittedFile], assignment: str, exercises: Exercises | None) -> list[Tree]:
-    """Return the source trees, one for each folder: `ws/src` in it, or else `src`, or else its packages."""
+    """Return the source trees, one for each assignment folder: its `ws/src`, or else `src`, or else its packages."""
     paths = {file.path for file in files}
-    homes: dict[PurePosixPath, PurePosixPath] = {}
+    folders: dict[PurePosixPath, PurePosixPath] = {}
     for path in sorted(paths):
-        home = _home(path.parts)
-        if home is not None and home.parent / MANIFEST not in paths:
-            root = home.parents[1] if home.parts[-2:] == ("ws", "src") else home.parent
-            if root not in homes or home.parts[-2:] == ("ws", "src"):
-                homes[root] = home
-    virtual = PurePosixPath()
-    packages = {path.parent for path in paths if path.name == MANIFEST} if not homes else set()
+        folder = _source_folder(path.parts)
+        if folder is not None and folder.parent / MANIFEST not in paths:
+            root = folder.parents[1] if folder.parts[-2:] == ("ws", "src") else folder.parent
+            if root not in folders or folder.parts[-2:] == ("ws", "src"):
+                folders[root] = folder
+    package = PurePosixPath()
+    packages = {path.parent for path in paths if path.name == MANIFEST} if not folders else set()
     outer = frozenset(package for package in packages if not packages.intersection(package.parents))
     if packages:
         if outer == {PurePosixPath()}:
-            virtual = _package_name(next(file.data for file in files if str(file.path) == MANIFEST))
-            homes = {PurePosixPath(): PurePosixPath()} if virtual.parts else {}
+            package = _package_name(next(file.data for file in files if str(file.path) == MANIFEST))
+            folders = {PurePosixPath(): PurePosixPath()} if package.parts else {}
         else:
-            homes = {package.parent: package.parent for package in outer}
+            folders = {package.parent: package.parent for package in outer}
     others = set(course_paths.assignments()) - {assignment}
-    below: dict[PurePosixPath, list[SubmittedFile]] = {home: [] for home in homes.values()}
+    files_of: dict[PurePosixPath, list[SubmittedFile]] = {folder: [] for folder in folders.values()}
     for file in files:
         if not outer or outer.intersection(file.path.parents):
-            for home in below.keys() & set(file.path.parents):
-                below[home].append(file)
+            for folder in files_of.keys() & set(file.path.parents):
+                files_of[folder].append(file)
     trees = []
-    for root, home in homes.items():
-        if others.intersection(home.parts):
+    for root, folder in folders.items():
+        if others.intersection(folder.parts):
             continue
-        inside = {
-            (p := virtual / file.path.relative_to(home)): SubmittedFile(p, file.data, file.executable)
-            for file in below[home]
+        tree_files = {
+            (p := package / file.path.relative_to(folder)): SubmittedFile(p, file.data, file.executable)
+            for file in files_of[folder]
         }
-        trees.append(Tree(home, root, outer, inside, _tree_answers(inside, exercises)))
-    own = exercises.packages if exercises is not None else frozenset()
-    return [tree for tree in trees if own.intersection(path.parts[0] for path in tree.files)] or trees
+        trees.append(Tree(folder, root, outer, tree_files, _tree_answers(tree_files, exercises)))
+    chapter_packages = exercises.packages if exercises is not None else frozenset()
+    return [tree for tree in trees if chapter_packages.intersection(path.parts[0] for path in tree.files)] or trees
 
 
-def _home(parts: tuple[str, ...]) -> PurePosixPath | None:
+def _source_folder(parts: tuple[str, ...]) -> PurePosixPath | None:
     """Return the folder of packages that contains a file: the first `ws/src` of its path, or else the first `src`."""
     for index in range(len(parts) - 2):
         if parts[index : index + 2] == ("ws", "src"):
@@ -203,7 +205,7 @@ def _package_name(manifest: bytes) -> PurePosixPath:
 
 
 def _tree_answers(files: Mapping[PurePosixPath, SubmittedFile], exercises: Exercises | None) -> Answers:
-    """Return a digest of each file that is not as it was released."""
+    """Return a digest of each file that differs from the released one."""
     return {
         str(path): hashlib.sha256(file.data.replace(b"\r\n", b"\n")).hexdigest()
         for path, file in files.items()
@@ -214,24 +216,24 @@ def _tree_answers(files: Mapping[PurePosixPath, SubmittedFile], exercises: Exerc
 def _notebooks(
     files: Sequence[SubmittedFile], trees: Sequence[Tree], assignment: str, exercises: Exercises | None
 ) -> list[Notebook]:
-    """Return the notebooks of the assignment, by name or by cells, or all notebooks if none matches."""
-    homes = {tree.home for tree in trees if tree.home.parts}
-    named, alike, others = [], [], []
+    """Return the notebooks whose names or cells are the assignment's, or else those that match no assignment."""
+    folders = {tree.folder for tree in trees if tree.folder.parts}
+    by_name, by_cells, others = [], [], []
     for file in files:
-        if not is_notebook(file.path.name) or homes.intersection((file.path, *file.path.parents)):
+        if not is_notebook(file.path.name) or folders.intersection((file.path, *file.path.parents)):
             continue
-        notebook, is_of_chapter = _read(file, exercises)
+        notebook, has_chapter_cell = _read_notebook(file, exercises)
         if names_assignment(file.path.name, assignment):
-            named.append(notebook)
-        elif is_of_chapter:
-            alike.append(notebook)
+            by_name.append(notebook)
+        elif has_chapter_cell:
+            by_cells.append(notebook)
         elif not any(names_assignment(file.path.name, other) for other in course_paths.assignments()):
             others.append(notebook)
-    return named + alike or others
+    return by_name + by_cells or others
 
 
-def _read(file: SubmittedFile, exercises: Exercises | None) -> tuple[Notebook, bool]:
-    """Return a notebook, and whether a cell of it is one of the chapter's exercises."""
+def _read_notebook(file: SubmittedFile, exercises: Exercises | None) -> tuple[Notebook, bool]:
+    """Return a notebook, and whether one of its cells comes from the chapter."""
     try:
         cells = tuple(read_cells(file.data))
     except ValueError as error:
@@ -239,24 +241,24 @@ def _read(file: SubmittedFile, exercises: Exercises | None) -> tuple[Notebook, b
     if exercises is None:
         return Notebook(file, cells, {"": hashlib.sha256(file.data).hexdigest()}), False
     answers: dict[str, str] = {}
-    is_of_chapter = False
+    has_chapter_cell = False
     for cell in cells:
         written, name = written_file(cell["source"]), exercises.grade_id(cell)
         target = None
         if written is not None and written[0].is_relative_to(SOURCE):
             target = written[0].relative_to(SOURCE)
         if written is not None and target is not None and target in exercises.targets:
-            is_of_chapter = True
+            has_chapter_cell = True
             if not is_stub(written[1], exercises.targets[target]):
                 answers[str(target)] = written[1].strip()
         elif name in exercises.answers:
-            is_of_chapter = True
+            has_chapter_cell = True
             if not same_text(cell["source"], exercises.answers[name]):
                 answers[name] = cell["source"].strip()
         elif name in exercises.locked:
-            is_of_chapter = True
-    return Notebook(file, cells, answers), is_of_chapter
+            has_chapter_cell = True
+    return Notebook(file, cells, answers), has_chapter_cell
 
 
-def _data(tree: Tree) -> dict[PurePosixPath, bytes]:
+def _contents_of(tree: Tree) -> dict[PurePosixPath, bytes]:
     return {path: file.data for path, file in tree.files.items()}

@@ -1,7 +1,7 @@
-"""Merges the files of a submission that count: those in `ws/src`, as `check` sees them.
+"""Selects the files of a submission that count: those in `ws/src`, which `check` also reads.
 
-A file that is missing, or still as it was released, is taken from the cell of the notebook that writes it. Where files
-are made by other code, the notebook has to run.
+A file that is missing, or unchanged since its release, is taken from the cell of the notebook that writes it. If other
+code creates the file, the notebook has to run.
 """
 
 from __future__ import annotations
@@ -24,17 +24,18 @@ class Cells:
     """The effects of a notebook's code cells.
 
     Attributes:
-        texts: the text of each file below `ws/src` that a cell only writes; the last cell without a stub counts.
-        others: whether a cell that is not the course's own does anything else.
+        texts: the text of each file below `ws/src` that a cell writes. If several cells write it, the last
+            one with the fewest stubs counts.
+        has_other_code: whether a cell that the student wrote does anything else.
     """
 
     texts: Mapping[PurePosixPath, str]
-    others: bool
+    has_other_code: bool
 
 
 @dataclass(frozen=True)
-class Counted:
-    """The packages that are graded, and sentences about them for the student. Without packages the notebook runs."""
+class GradedPackages:
+    """The packages that are graded, with notices for the student. `packages` is None if the notebook has to run."""
 
     packages: tuple[SubmittedFile, ...] | None
     notices: tuple[str, ...] = ()
@@ -43,7 +44,7 @@ class Counted:
 def read_code(cells: Sequence[Cell], exercises: Exercises) -> Cells:
     """Return the effects of the code cells of a submitted notebook."""
     texts: dict[PurePosixPath, str] = {}
-    others = False
+    has_other_code = False
     for cell in cells:
         name, source = exercises.grade_id(cell), cell["source"]
         if name in exercises.locked or (cell["cell_type"] != "code" and name not in exercises.answers):
@@ -53,62 +54,67 @@ def read_code(cells: Sequence[Cell], exercises: Exercises) -> Cells:
             path = written[0]
             if path.is_relative_to(SOURCE) and path != SOURCE:
                 path = path.relative_to(SOURCE)
-                before = texts.get(path, "")
-                if path not in texts or _stubs(written[1]) <= _stubs(before):
+                current = texts.get(path, "")
+                if path not in texts or _stub_count(written[1]) <= _stub_count(current):
                     texts[path] = written[1]
-        elif source.strip() and source.strip() not in exercises.known:
-            answered = name in exercises.answers and same_text(source, exercises.answers[name])
-            others = others or not (answered or cell["cell_type"] == "markdown")
-    return Cells(texts, others)
+        elif source.strip() and source.strip() not in exercises.course_cells:
+            is_unanswered = name in exercises.answers and same_text(source, exercises.answers[name])
+            has_other_code = has_other_code or not (is_unanswered or cell["cell_type"] == "markdown")
+    return Cells(texts, has_other_code)
 
 
 def with_given(source: Files, exercises: Exercises) -> dict[PurePosixPath, SubmittedFile]:
-    """Return a source tree with the packages that the chapter gives and the tree lacks."""
-    there = {path.parts[0] for path in source}
-    return {**{p: file for p, file in exercises.given.items() if p.parts[0] not in there}, **source}
+    """Return a source tree, extended by the given packages of the chapter that it lacks."""
+    existing = {path.parts[0] for path in source}
+    return {**{p: file for p, file in exercises.given.items() if p.parts[0] not in existing}, **source}
 
 
-def count(source: Files, cells: Cells, exercises: Exercises) -> Counted:
-    """Return the files that count of a source tree and a notebook, without running the notebook."""
-    counting = {path for path, file in source.items() if not exercises.is_as_released(path, file.data)}
-    missing = (exercises.targets.keys() | exercises.makes) - counting
-    if exercises.unknown or (missing and (cells.others or missing & exercises.makes)):
-        return Counted(None)
+def count(source: Files, cells: Cells, exercises: Exercises) -> GradedPackages:
+    """Return the packages to grade from a source tree and the cells of a notebook, without running it."""
+    changed_paths = {path for path, file in source.items() if not exercises.is_as_released(path, file.data)}
+    missing_paths = (exercises.targets.keys() | exercises.makes) - changed_paths
+    if exercises.makes_unknown_files or (missing_paths and (cells.has_other_code or missing_paths & exercises.makes)):
+        return GradedPackages(None)
     files = with_given(source, exercises)
-    taken = {
+    from_cells = {
         path: text
         for path, text in cells.texts.items()
-        if path not in counting and not (path in files and is_stub(text, exercises.targets.get(path, "")))
+        if path not in changed_paths and not (path in files and is_stub(text, exercises.targets.get(path, "")))
     }
-    _add_what_fits(files, (SubmittedFile(path, text.encode("utf-8", "replace")) for path, text in taken.items()))
+    _add_without_conflicts(
+        files, (SubmittedFile(path, text.encode("utf-8", "replace")) for path, text in from_cells.items())
+    )
     notices = []
     for path in sorted(exercises.targets):
         text = cells.texts.get(path)
         if text is None or is_stub(text, exercises.targets[path]):
             continue
-        if path in counting and not same_text(text, text_of(source[path].data)):
-            notices.append(differs(path))
-        elif path in taken and source:
-            notices.append(_from_cell(path, there=path in source))
-    return Counted(tuple(files[path] for path in sorted(files)), tuple(notices))
+        if path in changed_paths and not same_text(text, text_of(source[path].data)):
+            notices.append(difference_notice(path))
+        elif path in from_cells and source:
+            notices.append(_cell_notice(path, exists=path in source))
+    return GradedPackages(tuple(files[path] for path in sorted(files)), tuple(notices))
 
 
-def merge(source: Files, written: Sequence[SubmittedFile], exercises: Exercises) -> Counted:
-    """Return the files that count of a source tree and of the notebook's tree: those that `check` saw come first."""
-    ran = {file.path: file for file in written}
-    counting = {path: file for path, file in source.items() if not exercises.is_as_released(path, file.data)}
-    files = dict(counting)
-    _add_what_fits(files, (file for path, file in ran.items() if path not in counting))
-    expected = exercises.targets.keys() | exercises.makes
+def merge(source: Files, written: Sequence[SubmittedFile], exercises: Exercises) -> GradedPackages:
+    """Return the packages to grade from a source tree and the files that the notebook wrote.
+
+    Changed files of the source tree take precedence, because `check` read them.
+    """
+    by_path = {file.path: file for file in written}
+    changed_files = {path: file for path, file in source.items() if not exercises.is_as_released(path, file.data)}
+    files = dict(changed_files)
+    _add_without_conflicts(files, (file for path, file in by_path.items() if path not in changed_files))
+    expected_paths = exercises.targets.keys() | exercises.makes
     notices = [
-        differs(path)
-        for path in sorted(expected & counting.keys() & ran.keys())
-        if not same_text(text_of(ran[path].data), text_of(counting[path].data))
+        difference_notice(path)
+        for path in sorted(expected_paths & changed_files.keys() & by_path.keys())
+        if not same_text(text_of(by_path[path].data), text_of(changed_files[path].data))
     ]
-    return Counted(tuple(files[path] for path in sorted(files)), tuple(notices))
+    return GradedPackages(tuple(files[path] for path in sorted(files)), tuple(notices))
 
 
-def differs(path: PurePosixPath) -> str:
+def difference_notice(path: PurePosixPath) -> str:
     """Return the sentence about a file that differs from its cell."""
     return (
         f"{SOURCE / path} differs from the cell that writes it. The file counts: it is what check(...) looks at. "
@@ -116,19 +122,19 @@ def differs(path: PurePosixPath) -> str:
     )
 
 
-def _from_cell(path: PurePosixPath, *, there: bool) -> str:
-    why = "the file was still the released one" if there else "there was no such file"
-    return f"{SOURCE / path} was taken from the notebook's cell: {why}. Run the cell before check(...)."
+def _cell_notice(path: PurePosixPath, *, exists: bool) -> str:
+    reason = "the file was still the released one" if exists else "there was no such file"
+    return f"{SOURCE / path} was taken from the notebook's cell: {reason}. Run the cell before check(...)."
 
 
-def _add_what_fits(files: dict[PurePosixPath, SubmittedFile], more: Iterable[SubmittedFile]) -> None:
-    """Add files to a tree, except those that conflict with a folder or file there."""
+def _add_without_conflicts(files: dict[PurePosixPath, SubmittedFile], additions: Iterable[SubmittedFile]) -> None:
+    """Add files to a tree, except those that conflict with a folder or a file of the tree."""
     folders = {folder for path in files for folder in path.parents}
-    for file in more:
+    for file in additions:
         if file.path not in folders and not any(folder in files for folder in file.path.parents):
             files[file.path] = file
             folders.update(file.path.parents)
 
 
-def _stubs(text: str) -> int:
+def _stub_count(text: str) -> int:
     return text.count(STILL_TO_BE_WRITTEN)

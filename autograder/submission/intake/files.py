@@ -1,4 +1,4 @@
-"""The files of a submission in memory, and how much of it is read."""
+"""The files of a submission in memory, and the limits for reading them."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from autograder.submission.intake.notebooks import without_outputs
 
 MAX_FILES = 2000
 MAX_FILE_BYTES = 16 * 1024 * 1024
-MAX_WRAPPED_BYTES = 64 * 1024 * 1024  # of a notebook whose outputs are dropped, and of an archive in an archive
+MAX_WRAPPED_BYTES = 64 * 1024 * 1024  # limit for a notebook whose outputs are dropped, and for an archive in an archive
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
-MAX_READ_BYTES = 256 * 1024 * 1024  # that are decompressed to find the files
-# That decompressing makes, in all archives: one is read up to three times, its names, then its answers, then the rest.
+MAX_READ_BYTES = 256 * 1024 * 1024  # read or decompressed, from one archive and for all files
+# Limit for the decompressed bytes of all archives. A tar is read up to three times: names, possible answers, the rest.
 MAX_UNPACKED_BYTES = 4 * MAX_READ_BYTES
-MAX_SCANNED = 100_000  # files and folders that are looked at
+MAX_SCANNED = 100_000  # files and folders
 MAX_DEPTH = 16  # parts of a path
 MAX_PATH_BYTES = 200  # file systems allow 255 for each part
 
 
 @dataclass(frozen=True)
 class SubmittedFile:
-    """A file of a submission, by its path below the root or a folder of it."""
+    """A file of a submission. Its path is relative to the root of the submission, or to a folder in it."""
 
     path: PurePosixPath
     data: bytes
@@ -35,85 +35,88 @@ class SubmittedFile:
 
 
 @dataclass(frozen=True)
-class LeftOut:
-    """A file of a submission that was not read: its path, and the reason, which follows the path in a sentence."""
+class SkippedFile:
+    """A file of a submission that was not read."""
 
     path: PurePosixPath
-    why: str
-    whole: str = ""  # the reason as a whole sentence, if the path is of no help
-    may_hold_answer: bool = False  # whether it is an archive or a notebook
+    reason: str  # the part of the sentence after the path
+    whole_sentence: str = ""  # if not empty, a sentence that replaces the path and the reason
+    may_contain_answer: bool = False  # whether it is an archive or a notebook
 
     @property
     def sentence(self) -> str:
-        """The path with the reason."""
-        return self.whole or f"{self.path} {self.why}"
+        """The sentence for the student."""
+        return self.whole_sentence or f"{self.path} {self.reason}"
 
 
 @dataclass
 class Contents:
-    """The files of a submission, and those that were left out. It counts bytes before they are read."""
+    """The files of a submission, and those that were skipped. Bytes are counted before they are read."""
 
     files: list[SubmittedFile] = field(default_factory=list)
-    left_out: list[LeftOut] = field(default_factory=list)
-    kept: int = 0  # bytes in memory
-    read: int = 0  # bytes that were read or decompressed
-    unpacked: int = 0  # decompressed bytes, including those of skipped files
+    skipped: list[SkippedFile] = field(default_factory=list)
+    bytes_in_memory: int = 0
+    bytes_read: int = 0  # including decompressed bytes
+    bytes_unpacked: int = 0  # decompressed, including those of skipped files
     scanned: int = 0
     archives: int = 0
 
     def scan(self) -> None:
-        """Count a file or folder that was looked at."""
+        """Count a file or a folder. Raises StudentError if there are too many."""
         self.scanned += 1
         if self.scanned > MAX_SCANNED:
             raise unsafe(f"it holds more than {MAX_SCANNED:,} files and folders")
 
-    def take(self, file: SubmittedFile) -> None:
-        """Remove a file whose own files take its place."""
+    def remove(self, file: SubmittedFile) -> None:
+        """Remove an archive whose files replace it."""
         self.files.remove(file)
-        self.kept -= len(file.data)
+        self.bytes_in_memory -= len(file.data)
 
     def drop(self, first: int) -> None:
-        """Remove the files from a place on."""
-        self.kept -= sum(len(file.data) for file in self.files[first:])
+        """Remove the files from index `first` onwards."""
+        self.bytes_in_memory -= sum(len(file.data) for file in self.files[first:])
         del self.files[first:]
 
-    def omit(self, path: PurePosixPath, why: str, whole: str = "") -> None:
-        """Record a file that is not read."""
-        may_hold_answer = is_archive(path.name) or is_notebook(path.name)
-        self.left_out.append(LeftOut(path, why, whole, may_hold_answer))
+    def skip(self, path: PurePosixPath, reason: str, whole_sentence: str = "") -> None:
+        """Record that a file is not read."""
+        may_contain_answer = is_archive(path.name) or is_notebook(path.name)
+        self.skipped.append(SkippedFile(path, reason, whole_sentence, may_contain_answer))
 
     def add(self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False) -> None:
-        """Read a file, unless it breaks a bound; then note the reason."""
-        wrapped = is_notebook(path.name) or is_archive(path.name)
-        largest = MAX_WRAPPED_BYTES if wrapped else MAX_FILE_BYTES
+        """Read a file, or skip it if it exceeds a limit."""
+        is_wrapped = is_notebook(path.name) or is_archive(path.name)
+        limit = MAX_WRAPPED_BYTES if is_wrapped else MAX_FILE_BYTES
         if len(path.parts) > MAX_DEPTH:
-            self.omit(path, "", f"folders are nested more than {MAX_DEPTH} deep")
+            self.skip(path, "", f"folders are nested more than {MAX_DEPTH} deep")
         elif len(os.fsencode(path)) > MAX_PATH_BYTES:
-            self.omit(path, "", f"the name {str(path)[:60]!r}... is longer than {MAX_PATH_BYTES} bytes")
-        elif size > largest:
-            self.omit(path, f"is larger than {largest // 2**20} MiB")
+            self.skip(path, "", f"the name {str(path)[:60]!r}... is longer than {MAX_PATH_BYTES} bytes")
+        elif size > limit:
+            self.skip(path, f"is larger than {limit // 2**20} MiB")
         elif len(self.files) >= MAX_FILES:
-            self.omit(path, "", f"it holds more than {MAX_FILES} files")
-        elif self.kept + min(size, MAX_FILE_BYTES) > MAX_TOTAL_BYTES or self.read + size > MAX_READ_BYTES:
-            self.omit(path, "", f"it is larger than {MAX_TOTAL_BYTES // 2**20} MiB in all")
+            self.skip(path, "", f"it holds more than {MAX_FILES} files")
+        elif (
+            self.bytes_in_memory + min(size, MAX_FILE_BYTES) > MAX_TOTAL_BYTES
+            or self.bytes_read + size > MAX_READ_BYTES
+        ):
+            self.skip(path, "", f"it is larger than {MAX_TOTAL_BYTES // 2**20} MiB in all")
         else:
-            self.read += size
+            self.bytes_read += size
             data = read()
             if len(data) > MAX_FILE_BYTES and is_notebook(path.name):
                 data = without_outputs(data)
             if len(data) > MAX_FILE_BYTES and not is_archive(path.name):
-                self.omit(path, f"is larger than {MAX_FILE_BYTES // 2**20} MiB without its outputs")
+                self.skip(path, f"is larger than {MAX_FILE_BYTES // 2**20} MiB without its outputs")
                 return
-            self.kept += len(data)
+            self.bytes_in_memory += len(data)
             self.files.append(SubmittedFile(path, data, executable))
 
 
-def unsafe(why: str) -> StudentError:
-    """Return the error of a submission that is not opened."""
+def unsafe(reason: str) -> StudentError:
+    """Return the error for a submission that is not opened."""
     return StudentError(
         Diagnosis(
             Kind.UNSAFE_ARCHIVE,
-            f"The submission was not opened: {why}. Hand in the notebook and ws/src, without links and without what "
+            f"The submission was not opened: {reason}. Hand in the notebook and ws/src, without links and without what "
             "colcon builds.",
         )
     )

@@ -1,11 +1,11 @@
-"""Interprets the name of a file: a notebook, an archive, the assignment, its student."""
+"""Recognises notebooks, archives and assignments by the names of files."""
 
 from __future__ import annotations
 
 from pathlib import PurePosixPath
 
 NOTEBOOKS = (".ipynb", ".ipynb.txt", ".ipynb.json")  # browsers add a suffix to files that they show as text
-# Also of archives that the grader does not open: it says so.
+# They include archives that the grader cannot open, so that it can report them.
 ARCHIVES = (
     *(".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tbz", ".tar.xz", ".txz"),
     *(".gz", ".bz2", ".xz", ".7z", ".rar", ".zst", ".tzst", ".tar.zst"),
@@ -23,8 +23,8 @@ def is_archive(name: str) -> bool:
 
 
 def names_assignment(name: str, assignment: str) -> bool:
-    """Return whether a file is called after an assignment: `10_mapping (1).ipynb`, `Copy of 10_mapping.ipynb`."""
-    return _letters(assignment) in _letters(PurePosixPath(name).name)
+    """Return whether a file is named after an assignment: `10_mapping (1).ipynb`, `Copy of 10_mapping.ipynb`."""
+    return _letters_and_digits(assignment) in _letters_and_digits(PurePosixPath(name).name)
 
 
 def stem(name: str) -> str:
@@ -41,5 +41,5 @@ def reading_rank(path: PurePosixPath) -> int:
     return 1 if is_archive(path.name) else 2
 
 
-def _letters(name: str) -> str:
+def _letters_and_digits(name: str) -> str:
     return "".join(filter(str.isalnum, name.casefold()))

@@ -1,7 +1,7 @@
-"""Reads the cells of a notebook, as any tool may have saved it.
+"""Reads the cells of a notebook that any tool may have saved.
 
 JupyterLab opens more than nbformat's schema allows: cell ids before 4.5, outputs without a name, code cells without
-outputs, unknown keys. Of a cell, its kind, its text, its metadata and its id count here.
+outputs, unknown keys. Only the type, the source, the metadata and the id of a cell are read.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ import json
 import re
 from typing import Any
 
-from autograder.submission.json_size import holds_more, outside_strings
+from autograder.submission.json_size import exceeds, outside_strings
 
 CELL_TYPES = ("code", "markdown", "raw")
-# Of a notebook whose outputs are dropped: they say how many values a parser makes.
+# Limits for a notebook whose outputs are dropped. They bound the number of values that a parser creates.
 MAX_STRINGS = 1_000_000
 MAX_STRUCTURE = 8 * 1024 * 1024  # bytes outside of strings
-MAX_VALUES = 2_000_000  # commas and brackets outside of strings: three bytes can take sixty in memory
+MAX_VALUES = 2_000_000  # commas and brackets outside of strings; three bytes of JSON can take up sixty in memory
 MAX_CELLS = 20_000
-MAX_METADATA = 10_000  # characters of a cell's metadata as JSON; longer ones are left out
-_COUNTING = ("nbgrader", "course")
+MAX_METADATA = 10_000  # characters of a cell's metadata as JSON; longer metadata is left out
+_RELEVANT_METADATA = ("nbgrader", "course")
 _ID = re.compile(r"[a-zA-Z0-9_-]{1,64}")
 
 Cell = dict[str, Any]
@@ -31,10 +31,10 @@ def read_cells(data: bytes) -> list[Cell]:
     Raises:
         ValueError: the bytes are not a notebook of a known format.
     """
-    notebook = _parsed(data)
+    notebook = _parse(data)
     version = notebook.get("nbformat")
     if version == 3:
-        notebook = _converted(notebook)
+        notebook = _convert(notebook)
     elif version != 4:
         raise ValueError(f"its nbformat is {str(version)[:20]}, and this tool reads 4")
     cells = notebook.get("cells")
@@ -47,11 +47,11 @@ def read_cells(data: bytes) -> list[Cell]:
 
 
 def without_outputs(data: bytes) -> bytes:
-    """Return a notebook's bytes without its outputs; the same bytes if they cannot be read as one."""
+    """Return a notebook's bytes without its outputs, or the same bytes if they are not a notebook."""
     if not _is_simple(data):
         return data
     try:
-        notebook = _parsed(data)
+        notebook = _parse(data)
         for cell in notebook["cells"]:
             cell.pop("outputs", None)
         return json.dumps(notebook, ensure_ascii=True).encode()
@@ -60,15 +60,15 @@ def without_outputs(data: bytes) -> bytes:
 
 
 def _is_simple(data: bytes) -> bool:
-    """Return whether parsing JSON text makes few values, whatever it is."""
-    outside = outside_strings(data, 2 * MAX_STRINGS)
-    return outside is not None and len(outside) <= MAX_STRUCTURE
+    """Return whether parsing a JSON text can only create a limited number of values."""
+    structure = outside_strings(data, 2 * MAX_STRINGS)
+    return structure is not None and len(structure) <= MAX_STRUCTURE
 
 
-def _parsed(data: bytes) -> Cell:
+def _parse(data: bytes) -> Cell:
     try:
         text = data.decode(json.detect_encoding(data)).removeprefix("\ufeff")
-        if holds_more(text.encode("utf-8", "surrogatepass"), MAX_VALUES, 2 * MAX_VALUES):
+        if exceeds(text.encode("utf-8", "surrogatepass"), MAX_VALUES, 2 * MAX_VALUES):
             raise ValueError(f"it holds more than {MAX_VALUES:,} values: clear its outputs")
         notebook = json.loads(text)
     except RecursionError:
@@ -78,8 +78,8 @@ def _parsed(data: bytes) -> Cell:
     return notebook
 
 
-def _converted(notebook: Cell) -> Cell:
-    import nbformat  # slow to import; notebooks of 2014 and before are rare
+def _convert(notebook: Cell) -> Cell:
+    import nbformat  # slow to import, and seldom needed: notebooks from 2014 or earlier are rare
 
     try:
         return dict(nbformat.convert(nbformat.from_dict(notebook), 4))
@@ -108,8 +108,8 @@ def _cell(cell: object, number: int, ids: set[str]) -> Cell:
 
 
 def _metadata(metadata: object) -> dict[str, Any]:
-    """Return the relevant metadata of a cell. Other tools' metadata would only use memory."""
+    """Return the relevant metadata of a cell. Other tools' metadata would only take up memory."""
     if not isinstance(metadata, dict):
         return {}
-    counts = {name: metadata[name] for name in _COUNTING if name in metadata}
-    return counts if len(json.dumps(counts)) <= MAX_METADATA else {}
+    relevant = {name: metadata[name] for name in _RELEVANT_METADATA if name in metadata}
+    return relevant if len(json.dumps(relevant)) <= MAX_METADATA else {}

@@ -1,4 +1,4 @@
-"""Finds and reads the files of a submission: in a folder, in archives, and in archives that these hold."""
+"""Finds and reads the files of a submission: in a folder, in archives, and in nested archives."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from autograder.submission.intake.ignored import environment_parts, is_ignored
 from autograder.submission.intake.names import is_archive, is_notebook, reading_rank
 
 MAX_ARCHIVES = 20  # in a submission, at any depth
-MAX_NESTING = 3
+MAX_NESTING = 3  # levels of archives in archives that are opened
 _EXECUTABLE = 0o100
 
 
 def read_contents(path: Path, assignment: str) -> Contents:
-    """Read the files of a submission, with paths below its root. Files of an inner archive are below its name.
+    """Read the files of a submission, with paths relative to its root. Those of an inner archive begin with its path.
 
     Raises:
         UsageError: `path` does not exist.
-        StudentError: it cannot be read, or is unsafe as a whole.
+        StudentError: the submission cannot be read, or is unsafe as a whole.
     """
     contents = Contents()
     if path.is_dir():
@@ -45,20 +45,20 @@ def read_source_folder(folder: Path) -> tuple[SubmittedFile, ...]:
     """Read the files below a folder. Raises StudentError if one of them is unsafe."""
     contents = Contents()
     _read_folder(folder, contents)
-    if contents.left_out:
-        raise unsafe(contents.left_out[0].sentence)
+    if contents.skipped:
+        raise unsafe(contents.skipped[0].sentence)
     return tuple(contents.files)
 
 
 def _read_file(path: Path, contents: Contents) -> None:
     with path.open("rb") as file:
-        kind = archives.foreign_kind(file.read(8))
+        kind = archives.unsupported_kind(file.read(8))
         if kind:
-            raise StudentError(Diagnosis(Kind.UNREADABLE, f"{archives.foreign_sentence(path.name, kind)}."))
+            raise StudentError(Diagnosis(Kind.UNREADABLE, f"{archives.unsupported_sentence(path.name, kind)}."))
         file.seek(0)
         try:
             archives.read_archive(file, path.name, PurePosixPath(), contents)
-        except archives.DAMAGED as error:
+        except archives.READ_ERRORS as error:
             sentence = (
                 f"{path.name} is not a folder, a notebook or a readable zip or tar archive ({error}): hand in one of "
                 "these."
@@ -67,36 +67,36 @@ def _read_file(path: Path, contents: Contents) -> None:
 
 
 def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> None:
-    """Read the files below a folder; with `unpack`, put the files of archives in the place of these."""
+    """Read the files below a folder. With `unpack`, replace archives with the files in them."""
     pending, files = [root], []
     while pending:
         folder = pending.pop()
         children = sorted(folder.iterdir())
-        skipped = environment_parts(child.name for child in children)
+        environment = environment_parts(child.name for child in children)
         for child in children:
             contents.scan()
-            if is_ignored(child.name) or child.name in skipped:
+            if is_ignored(child.name) or child.name in environment:
                 continue
-            path, info = PurePosixPath(child.relative_to(root)), _info(child)
+            path, info = PurePosixPath(child.relative_to(root)), _status(child)
             if info is None:
-                contents.omit(path, "", f"the path {str(path)[:60]!r}... is longer than this system can open")
+                contents.skip(path, "", f"the path {str(path)[:60]!r}... is longer than this system can open")
             elif stat.S_ISREG(info.st_mode):
                 files.append((path, child, info))
             elif not stat.S_ISDIR(info.st_mode):
-                contents.omit(path, "is a symbolic link" if stat.S_ISLNK(info.st_mode) else "is not a regular file")
+                contents.skip(path, "is a symbolic link" if stat.S_ISLNK(info.st_mode) else "is not a regular file")
             elif len(path.parts) > MAX_DEPTH:
-                contents.omit(path, "", f"folders are nested more than {MAX_DEPTH} deep")
+                contents.skip(path, "", f"folders are nested more than {MAX_DEPTH} deep")
             else:
                 pending.append(child)
     for path, child, info in sorted(files, key=lambda item: (reading_rank(item[0]), item[0])):
-        if unpack and _is_wrapping(path):
+        if unpack and _may_contain_answer(path):
             with child.open("rb") as file:
                 _unpack(file, path, contents)
         else:
             contents.add(path, info.st_size, child.read_bytes, bool(info.st_mode & _EXECUTABLE))
 
 
-def _info(path: Path) -> os.stat_result | None:
+def _status(path: Path) -> os.stat_result | None:
     """Return the status of a path, or None if it is too long for the system."""
     try:
         return path.lstat()
@@ -107,35 +107,35 @@ def _info(path: Path) -> os.stat_result | None:
 
 
 def _open_archives(contents: Contents, nesting: int) -> None:
-    """Put the files of archives in the place of these."""
-    packed = [file for file in contents.files if _is_wrapping(file.path)]
+    """Replace archives with the files in them."""
+    packed = [file for file in contents.files if _may_contain_answer(file.path)]
     for file in packed:
-        contents.take(file)
+        contents.remove(file)
         if nesting:
             _unpack(io.BytesIO(file.data), file.path, contents)
         else:
-            contents.omit(file.path, f"lies in {MAX_NESTING} archives or more: hand in the folder as one zip")
+            contents.skip(file.path, f"lies in {MAX_NESTING} archives or more: hand in the folder as one zip")
     if packed and nesting:
         _open_archives(contents, nesting - 1)
 
 
-def _is_wrapping(path: PurePosixPath) -> bool:
-    """Return whether a file is an archive that may hold an answer: one in a source tree is a package's own data."""
+def _may_contain_answer(path: PurePosixPath) -> bool:
+    """Return whether a file is an archive that may contain an answer. An archive in a source tree is data."""
     return is_archive(path.name) and "src" not in path.parts
 
 
 def _unpack(file: IO[bytes], path: PurePosixPath, contents: Contents) -> None:
     contents.archives += 1
-    kind = archives.foreign_kind(file.read(8))
+    kind = archives.unsupported_kind(file.read(8))
     file.seek(0)
-    before = len(contents.files)
+    count = len(contents.files)
     if contents.archives > MAX_ARCHIVES:
-        contents.omit(path, f"is one of more than {MAX_ARCHIVES} archives")
+        contents.skip(path, f"is one of more than {MAX_ARCHIVES} archives")
     elif kind:
-        contents.omit(path, "", archives.foreign_sentence(str(path), kind))
+        contents.skip(path, "", archives.unsupported_sentence(str(path), kind))
     else:
         try:
             archives.read_archive(file, path.name, path, contents)
-        except (StudentError, *archives.DAMAGED) as error:
-            contents.drop(before)
-            contents.omit(path, f"cannot be opened ({error})")
+        except (StudentError, *archives.READ_ERRORS) as error:
+            contents.drop(count)
+            contents.skip(path, f"cannot be opened ({error})")

@@ -7,12 +7,12 @@ import re
 from pathlib import PurePosixPath
 
 _HEAD = re.compile(r"%%(?:write)?file[ \t]+(\"[^\"\n]+\"|'[^'\n]+'|[^\s'\"]+)[ \t]*\n")
-_EXPANDED = frozenset("{}$~\\\0")  # IPython puts other text in their place, or no file can have them
+_EXPANDED = frozenset("{}$~\\\0")  # characters that IPython expands, or that no file name can contain
 MAX_NAME_BYTES = 200
 
 
 def written_file(source: str) -> tuple[PurePosixPath, str] | None:
-    """Return the path and the text that a cell writes; None if it does anything else, too.
+    """Return the path and the text that a cell writes, or None if it also does anything else.
 
     The path is relative to the notebook's folder and stays below it.
     """
@@ -29,7 +29,7 @@ def written_file(source: str) -> tuple[PurePosixPath, str] | None:
 
 
 def same_text(one: str, two: str) -> bool:
-    """Return whether two texts differ in nothing but line ends, a byte order mark and empty lines at the end."""
+    """Return whether two texts are equal except for line ends, a byte order mark and empty lines at the end."""
     return _plain(one) == _plain(two)
 
 

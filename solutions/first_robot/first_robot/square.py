@@ -30,10 +30,10 @@ TURN_RATE = math.radians(90.0) / TURN_SECONDS  # rad/s, positive is to the left
 
 def command_at(seconds):
     """
-    Return (linear, angular): what the robot does so many seconds after its start.
+    Return (linear, angular): what the robot does this many seconds after its start.
 
     SIDE_SECONDS straight on at SPEED, then TURN_SECONDS on the spot at TURN_RATE, and so on
-    for ever. At exactly SIDE_SECONDS it turns already. linear is in m/s, angular in rad/s.
+    for ever. At exactly SIDE_SECONDS, it already turns. linear is in m/s, angular in rad/s.
     """
     within = seconds % (SIDE_SECONDS + TURN_SECONDS)
     if within < SIDE_SECONDS:

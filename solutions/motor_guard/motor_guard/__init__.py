@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Reactive navigation in three nodes: one sees, one drives, one watches the other two."""
+"""Keeps a motor cool: a thermometer, a moving average and a decision."""

@@ -26,7 +26,7 @@ from motor_guard.running import run
 
 class Smoother(Node):
     """
-    Publishes one average for each reading that is a number.
+    Publishes one average for each reading that is finite.
 
     Subscribes to temperature, publishes smoothed, both motor_guard_interfaces/Temperature.
     """

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node that measures: a simulated thermometer on a motor that works in turns."""
+"""The node that measures: a simulated thermometer on a motor that warms and cools by turns."""
 
 import math
 
@@ -25,7 +25,7 @@ READINGS_A_TURN = 20
 
 
 class Thermometer(Node):
-    """Publishes temperature (motor_guard_interfaces/Temperature), one reading a period."""
+    """Publishes temperature (motor_guard_interfaces/Temperature), one reading each period."""
 
     def __init__(self, **kwargs):
         """

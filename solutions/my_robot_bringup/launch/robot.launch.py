@@ -29,7 +29,7 @@ def generate_launch_description():
     """
     Declare robot_name, speed and report; start driver and reporter with config/robot.yaml.
 
-    robot_name: the reporter's parameter robot_name, always text; default robot1.
+    robot_name: the reporter's parameter robot_name, always a string; default robot1.
     speed: the driver's parameter speed, always a float, in m/s; default 0.2.
     report: whether the reporter starts, true or false; default true.
     """

@@ -33,7 +33,7 @@ def generate_launch_description():
 
     battery: the self-test's parameter battery, always a float, in percent.
     self_test ends with 0: the driver starts. With anything else: everything shuts down.
-    driver ends, however: everything shuts down.
+    driver ends in any way: everything shuts down.
     reporter ends: it is started again half a second later.
     """
     battery = ParameterValue(LaunchConfiguration('battery'), value_type=float)

@@ -21,8 +21,8 @@ def contradiction(safety_distance, slow_distance):
     """
     Return why two distances (m) do not fit together, or '' when they do.
 
-    The safety distance must be below the slow distance. The sentence holds the names and the
-    values of both.
+    The safety distance must be below the slow distance. The sentence contains the names and the
+    values of both parameters.
     """
     if safety_distance < slow_distance:
         return ''

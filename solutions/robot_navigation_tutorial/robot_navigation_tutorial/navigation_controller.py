@@ -58,7 +58,7 @@ class NavigationController(Node):
         self.create_timer(CONTROL_PERIOD, self.control)
 
     def clearance_callback(self, clearance):
-        """Remember the newest clearance."""
+        """Remember the clearance, in place of the one before."""
         self.clearance = clearance
 
     def enable_callback(self, request, response):
@@ -70,7 +70,7 @@ class NavigationController(Node):
 
     def control(self):
         """
-        Publish exactly one command at each call, also to stand still.
+        Publish exactly one command at each call, even to stand still.
 
         Disabled, or without a clearance that can be trusted: stand still. Otherwise turn on
         the spot at up to turn_speed, or drive straight on at up to forward_speed, as
@@ -87,7 +87,7 @@ class NavigationController(Node):
         self.publisher.publish(command)
 
     def is_trusted(self, clearance):
-        """Say whether there is a clearance, it is valid, and its stamp is not too old."""
+        """Return whether there is a valid clearance whose stamp is at most data_timeout old."""
         if clearance is None or not clearance.valid:
             return False
         age = self.get_clock().now() - Time.from_msg(clearance.header.stamp)

@@ -19,11 +19,11 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 
 def declare(node, name, default, lowest, highest, description):
     """
-    Declare a number of a node, with a description and a range.
+    Declare a numeric parameter of a node, with a description and a range.
 
-    rclpy refuses a value of another type, and one that is not from lowest to highest, at the
-    start and later. The node asks get_parameter(name).value whenever it needs the number, so
-    a change has an effect immediately.
+    rclpy refuses a value of another type, and one outside lowest to highest, at the start
+    and later. The node calls get_parameter(name).value whenever it needs the number, so a
+    change takes effect immediately.
     """
     bounds = FloatingPointRange(from_value=lowest, to_value=highest)
     node.declare_parameter(

@@ -23,9 +23,9 @@ def nearest(scan, middle, half_angle):
     """
     Return the distance to the nearest thing in a sector, in metres.
 
-    scan is a sensor_msgs/LaserScan. A beam's bearing is angle_min + i * angle_increment; it
-    belongs to the sector when it is at most half_angle from middle, the shorter way round.
-    Its reading counts by REP 117:
+    scan is a sensor_msgs/LaserScan. Beam i has the bearing angle_min + i * angle_increment.
+    It belongs to the sector when this bearing is at most half_angle from middle, the
+    shorter way round. Its reading counts by REP 117:
 
     nan                               invalid, as if the beam were not there
     +inf                              nothing within range_max

@@ -31,7 +31,7 @@ HEALTH_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 class StatusMonitor(Node):
     """
-    Says twice a second how the navigation system is.
+    Reports twice a second how the navigation system is doing.
 
     Subscribes to scan (sensor_msgs/LaserScan), clearance
     (robot_navigation_interfaces/Clearance) and cmd_vel (geometry_msgs/Twist), publishes
@@ -58,7 +58,7 @@ class StatusMonitor(Node):
         self.create_timer(REPORT_PERIOD, self.report)
 
     def hear(self, topic):
-        """Remember that a message of this topic has just arrived."""
+        """Remember that a message on this topic has just arrived."""
         self.heard[topic] = self.get_clock().now()
 
     def clearance_callback(self, clearance):

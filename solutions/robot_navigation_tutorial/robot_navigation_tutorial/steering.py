@@ -22,10 +22,10 @@ def choose_turn(clearance, safety_distance, turn):
     """
     Return STRAIGHT, LEFT or RIGHT.
 
-    clearance has the distances front, left and right in metres, and turn is the choice
-    before. Something ahead that is nearer than safety_distance starts a turn, towards the
-    side with more room, to the left when both have the same. A turn keeps its direction, and
-    ends when front is at least safety_distance + MARGIN.
+    clearance has the distances front, left and right in metres, and turn is the previous
+    choice. Something ahead that is nearer than safety_distance starts a turn, towards the
+    side with more room, or to the left when both have the same. A turn keeps its direction,
+    and ends when front is at least safety_distance + MARGIN.
     """
     if turn == STRAIGHT and clearance.front >= safety_distance:
         return STRAIGHT

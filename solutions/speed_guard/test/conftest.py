@@ -31,7 +31,7 @@ DEADLINE = 5.0  # s: only a broken node makes a test wait so long
 
 
 class Robot(Node):
-    """A planner, a distance sensor, and motors that remember: all that a guard has to do with."""
+    """A planner, a distance sensor, and motors that remember: all that is around a guard."""
 
     def __init__(self, context):
         """Create an endpoint for each of the guard's topics, and the executor of the test."""
@@ -72,7 +72,7 @@ class Robot(Node):
             self.test_executor.spin_once(timeout_sec=0.05)
 
     def see(self, distance):
-        """Let the sensor publish a distance; wait until it has gone round."""
+        """Let the sensor publish a distance; wait until it has arrived."""
         count = len(self.seen)
         self.sensor.publish(Range(range=distance))
         self.until(lambda: len(self.seen) > count)

@@ -37,7 +37,7 @@ def guard(robot):
 
 
 def test_it_is_called_speed_guard(robot, guard):
-    """Parameters in a file reach it by its name."""
+    """It is called speed_guard: parameters in a file reach it by this name."""
     guard()
     assert ('speed_guard', '/') in robot.get_node_names_and_namespaces()
 
@@ -58,7 +58,7 @@ def test_the_newest_distance_counts(robot, guard):
 
 
 def test_a_turn_stays_as_it_is(robot, guard):
-    """Only linear.x is changed: each other field stays, on a clear way and where it brakes."""
+    """Only linear.x is changed: all other fields stay, on a clear way and where it brakes."""
     guard(timeout=PATIENT)
     for distance, speed in ((4.0, 0.8), (0.2, 0.0)):
         robot.see(distance)
@@ -85,7 +85,7 @@ def test_its_distances_are_parameters(robot, guard):
 
 
 def test_its_parameters_have_defaults(robot, guard):
-    """Without parameters, they are those of the contract: 0.5 m, 1.5 m and 0.5 s."""
+    """Without overrides, the parameters are those of the contract: 0.5 m, 1.5 m and 0.5 s."""
     node = guard()
     names = 'stop_distance', 'slow_distance', 'timeout'
     assert [node.get_parameter(name).value for name in names] == [0.5, 1.5, 0.5]
@@ -100,7 +100,7 @@ def test_an_old_distance_is_not_known(robot, guard):
 
 
 def test_commands_do_not_keep_a_distance_young(robot, guard):
-    """While commands come, a distance gets old all the same."""
+    """A distance gets old even while commands come."""
     guard(timeout=1.0)
     robot.see(4.0)
     robot.until(lambda: robot.ask(0.8).linear.x == 0.0, seconds=3.0)

@@ -51,7 +51,7 @@ def test_an_unknown_distance_is_not_a_clear_way():
 
 
 def test_the_way_back_is_not_guarded():
-    """A speed of 0 or below stays as it is, whatever is in front or not known."""
+    """A speed of 0 or below stays as it is at every distance, known or not."""
     for distance in (0.1, 1.0, math.inf, math.nan, None):
         assert safe_speed(-0.3, distance) == -0.3
         assert safe_speed(0.0, distance) == 0.0

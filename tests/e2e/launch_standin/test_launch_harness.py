@@ -270,7 +270,7 @@ def test_a_launch_file_that_is_missing_or_broken_ends_the_launch_with_a_reason(w
     with pytest.raises(
         CheckFailed, match=r"`ros2 launch -s fleet absent.launch.py` fails: file 'absent.launch.py' was"
     ):
-        launch_probe.shown_arguments(workspace, "fleet", "absent.launch.py")
+        launch_probe.declared_arguments(workspace, "fleet", "absent.launch.py")
     with LaunchHarness(workspace, "fleet", "broken.launch.py") as harness:
         with pytest.raises(
             CheckFailed, match=r"No node is up: /light missing. What the launch said: .*'config' is not"
@@ -280,7 +280,7 @@ def test_a_launch_file_that_is_missing_or_broken_ends_the_launch_with_a_reason(w
 
 
 def test_the_arguments_of_a_launch_file_are_shown(workspace: Workspace) -> None:
-    arguments = launch_probe.shown_arguments(workspace, "fleet", "arguments.launch.py")
+    arguments = launch_probe.declared_arguments(workspace, "fleet", "arguments.launch.py")
     assert list(arguments) == ["robot", "mode", "topic"]
     assert arguments["mode"].choices == ("drive", "park")
 

@@ -200,7 +200,7 @@ def prepare() -> None:
     if is_stand_in():
         for name in ("action", "interface", "launch", "node", "param", "pkg", "run", "service", "topic"):
             importlib.import_module(f"autograder.ros.ros2.{name}")
-        sys.path.append(str(importlib.import_module("autograder.ros.ros2.main").STAND_INS))
+        sys.path.append(str(importlib.import_module("autograder.ros.ros2.main").STANDINS_FOLDER))
     for name in ("rosidl_runtime_py", "example_interfaces.action", "sensor_msgs.msg", "launch"):
         importlib.import_module(name)
 

@@ -10,6 +10,7 @@ import pytest
 
 from autograder import bootstrap
 from autograder.bootstrap import Interpreter, SetUpError
+from autograder.ros.distribution import DISTRIBUTION
 
 PY312 = Interpreter("/usr/bin/python3.12", "3.12", "3.12.1 (main)", ".cpython-312-x86_64-linux-gnu.so")
 LOCK = """\
@@ -26,7 +27,7 @@ rosbags==0.10 \\
 
 
 @pytest.mark.parametrize("version", ["3.10", "3.11", "3.12", "3.13"])
-def test_each_python_that_jazzy_has_wheels_for_is_accepted(version: str) -> None:
+def test_each_python_that_ros_has_wheels_for_is_accepted(version: str) -> None:
     bootstrap.check_machine(version, "Linux", "x86_64")
 
 
@@ -62,18 +63,30 @@ def test_without_a_sourced_ros_the_wheels_are_used() -> None:
 
 
 def test_this_projects_own_environment_does_not_count_as_sourced() -> None:
-    environment = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": str(VENV), "PYTHONPATH": str(VENV / "lib/site-packages")}
+    environment = {
+        "ROS_DISTRO": DISTRIBUTION.name,
+        "AMENT_PREFIX_PATH": str(VENV),
+        "PYTHONPATH": str(VENV / "lib/site-packages"),
+    }
     assert bootstrap.sourced_ros(environment, VENV, PY312) is None
 
 
 def test_a_students_workspace_over_the_wheels_does_not_count_as_sourced() -> None:
-    environment = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": f"/ws/install/robot:{VENV}", "PYTHONPATH": "/ws/install"}
+    environment = {
+        "ROS_DISTRO": DISTRIBUTION.name,
+        "AMENT_PREFIX_PATH": f"/ws/install/robot:{VENV}",
+        "PYTHONPATH": "/ws/install",
+    }
     assert bootstrap.sourced_ros(environment, VENV, PY312) is None
 
 
 @pytest.mark.promise("If a ROS 2 Jazzy installation is sourced, the course uses it.")
-def test_a_sourced_jazzy_is_used(ros: Path) -> None:
-    sourced = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": "/opt/ros/jazzy", "PYTHONPATH": f"/elsewhere:{ros}"}
+def test_a_sourced_ros_is_used(ros: Path) -> None:
+    sourced = {
+        "ROS_DISTRO": DISTRIBUTION.name,
+        "AMENT_PREFIX_PATH": "/opt/ros/sourced",
+        "PYTHONPATH": f"/elsewhere:{ros}",
+    }
     assert bootstrap.sourced_ros(sourced, VENV, PY312) == str(ros)
 
 
@@ -85,21 +98,20 @@ def test_a_sourced_jazzy_is_used(ros: Path) -> None:
     ],
 )
 def test_another_distribution_is_refused_by_name(variables: dict[str, str]) -> None:
-    with pytest.raises(
-        SetUpError, match=f"distribution is {variables['ROS_DISTRO']}, but the course needs Jazzy: use a shell"
-    ):
+    reason = f"distribution is {variables['ROS_DISTRO']}, but the course needs {DISTRIBUTION.title}: use a shell"
+    with pytest.raises(SetUpError, match=reason):
         bootstrap.sourced_ros(variables, VENV, PY312)
 
 
 def test_a_ros_of_an_unknown_distribution_is_rejected(ros: Path) -> None:
-    with pytest.raises(SetUpError, match="is unknown, but the course needs Jazzy"):
+    with pytest.raises(SetUpError, match=f"is unknown, but the course needs {DISTRIBUTION.title}"):
         bootstrap.sourced_ros({"PYTHONPATH": str(ros)}, VENV, PY312)
 
 
-def test_a_jazzy_for_another_python_is_refused_with_the_python_that_fits(ros: Path) -> None:
+def test_a_ros_for_another_python_is_refused_with_the_python_that_fits(ros: Path) -> None:
     py311 = replace(PY312, version="3.11", suffix=".cpython-311-x86_64-linux-gnu.so")
     with pytest.raises(SetUpError, match=r"is not for Python 3\.11: run `make PYTHON=python3\.12`"):
-        bootstrap.sourced_ros({"ROS_DISTRO": "jazzy", "PYTHONPATH": str(ros)}, VENV, py311)
+        bootstrap.sourced_ros({"ROS_DISTRO": DISTRIBUTION.name, "PYTHONPATH": str(ros)}, VENV, py311)
 
 
 def test_only_ros_itself_is_removed_from_the_lock() -> None:
@@ -114,7 +126,7 @@ def test_children_see_the_proxy_but_neither_foreign_modules_nor_the_wheels_libra
     environment = {
         "HTTPS_PROXY": "proxy:3128",
         "PIP_CERT": "/cert.pem",
-        "PYTHONPATH": "/opt/ros/jazzy/lib",
+        "PYTHONPATH": "/opt/ros/sourced/lib",
         "PYTHONHOME": "/odd",
         "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1",
         "LD_LIBRARY_PATH": "/other/.venv/lib",

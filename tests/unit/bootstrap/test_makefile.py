@@ -106,7 +106,7 @@ def test_the_python_of_the_system_is_preferred_to_one_built_by_hand(interpreters
     assert chosen_interpreter(interpreters, SYSTEM_PYTHON="system") == "system"
 
 
-def test_the_python_of_jazzy_is_preferred(interpreters: Path) -> None:
+def test_the_python_of_the_platform_is_preferred(interpreters: Path) -> None:
     for name in ("python3.10", "python3.12", "python3"):
         write_interpreter(interpreters, name, "exit 0")
     assert chosen_interpreter(interpreters) == "python3.12"

@@ -11,6 +11,7 @@ import pytest
 
 from autograder import bootstrap
 from autograder.bootstrap import Interpreter
+from autograder.ros.distribution import DISTRIBUTION
 
 ROOT = Path(__file__).parents[3]
 
@@ -54,7 +55,8 @@ def script_clone(clone: Path) -> Path:
 def test_the_script_gives_the_reason_for_a_failure_in_a_sentence(script_clone: Path) -> None:
     completed = script(script_clone, ROS_DISTRO="iron", AMENT_PREFIX_PATH="/opt/ros/iron")
     assert (completed.returncode, completed.stdout) == (1, "")
-    assert completed.stderr.startswith("set-up: the sourced ROS distribution is iron, but the course needs Jazzy")
+    reason = f"the sourced ROS distribution is iron, but the course needs {DISTRIBUTION.title}"
+    assert completed.stderr.startswith(f"set-up: {reason}")
     assert completed.stderr.count("\n") == 1
 
 

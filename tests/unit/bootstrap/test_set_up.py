@@ -11,6 +11,7 @@ import pytest
 
 from autograder import bootstrap
 from autograder.bootstrap import Interpreter, SetUp, SetUpError
+from autograder.ros.distribution import DISTRIBUTION
 
 PY312 = Interpreter("/usr/bin/python3.12", "3.12", "3.12.1 (main)", ".cpython-312-x86_64-linux-gnu.so")
 
@@ -25,7 +26,7 @@ def test_a_set_up_is_created_once(set_up: SetUp, commands: Any, capsys: pytest.C
     set_up.make(dev=False)
     assert commands.take() == ["venv", "base", "patch", "launch", "project", "tutorials"]
     output = capsys.readouterr().out
-    assert output.startswith("set-up: creating .venv with Python 3.12.1 and ROS 2 Jazzy from wheels\n")
+    assert output.startswith(f"set-up: creating .venv with Python 3.12.1 and ROS 2 {DISTRIBUTION.title} from wheels\n")
     set_up.make(dev=False)
     assert commands.take() == []
     assert capsys.readouterr().out == ""
@@ -67,7 +68,7 @@ def test_a_changed_file_repeats_the_steps_that_depend_on_it(
     assert commands.take() == repeated_steps
 
 
-@pytest.mark.parametrize("change", [{"sourced": "/opt/ros/jazzy"}, {"interpreter": replace(PY312, build="3.12.2")}])
+@pytest.mark.parametrize("change", [{"sourced": "/opt/ros/sourced"}, {"interpreter": replace(PY312, build="3.12.2")}])
 def test_a_different_ros_or_interpreter_repeats_the_whole_set_up(
     set_up: SetUp, commands: Any, change: dict[str, object]
 ) -> None:
@@ -198,7 +199,7 @@ def test_a_python_without_pip_is_reported_with_the_package_to_install(set_up: Se
 
 
 def test_with_a_sourced_ros_the_wheels_of_ros_are_not_installed(set_up: SetUp, commands: Any) -> None:
-    replace(set_up, sourced="/opt/ros/jazzy/lib/python3.12/site-packages").make(dev=False)
+    replace(set_up, sourced="/opt/ros/sourced/lib/python3.12/site-packages").make(dev=False)
     lock = (set_up.root / "requirements.lock").read_text()
     assert (set_up.venv / "requirements.lock").read_text() == bootstrap.without_ros(lock) != lock
     assert f"-r {set_up.venv}/requirements.lock" in " ".join(commands.ran)

@@ -73,7 +73,7 @@ def test_a_half_written_package_is_reported_with_the_missing_files(tmp_path: Pat
 
 @pytest.mark.parametrize("part", ["setup.py", "setup.cfg", f"resource/{NAME}", f"{NAME}/__init__.py"])
 def test_a_package_that_colcon_checks_may_lack_any_file_but_its_manifest(tmp_path: Path, part: str) -> None:
-    build.require_packages(_write_package(tmp_path, without=part), (NAME,), whole=False)
+    build.require_packages(_write_package(tmp_path, without=part), (NAME,), complete=False)
 
 
 def test_a_malformed_manifest_of_another_package_does_not_stop_the_build(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.building.interface_bundle import interface_bundle, relocate
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.trees import read_tree
@@ -55,7 +55,7 @@ def test_any_change_of_content_changes_the_key(tmp_path: Path, name: str) -> Non
     package(tmp_path, "robot_msgs", interface=True)
 
     def current_key() -> str:
-        return keeper.key(read_tree(tmp_path, SOURCES))
+        return bundle_server.key(read_tree(tmp_path, SOURCES))
 
     before = current_key()
     assert current_key() == before

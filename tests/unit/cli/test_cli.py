@@ -20,7 +20,7 @@ from autograder.cli.grade import grade as grade_verb
 from autograder.cli.text_tables import table
 from autograder.exceptions import GraderError, UsageError
 from autograder.grade import DEFAULT_SEED
-from autograder.grade.apart import read_digests
+from autograder.grade.isolated_reader import read_digests
 from autograder.notebook.checking import CheckReport
 from autograder.result import model as result
 from autograder.run.sandbox import Isolation

@@ -18,7 +18,7 @@ from autograder.grade.cluster.accept import accept
 from autograder.grade.cluster.exceptions import ClusterError
 from autograder.grade.cluster.task import MAX_REPLY, Reply, Task
 from autograder.grade.job import Job
-from autograder.grade.pipeline import not_graded, refused
+from autograder.grade.pipeline import not_graded_result, unclear_result
 from autograder.grade.reply import ReplyError
 from autograder.grade.store import write_result
 from autograder.result.model import Artifact, CheckResult, Result, Status
@@ -168,7 +168,7 @@ def test_a_hostile_reply_is_rejected_and_writes_nothing(job: Job, result: Result
 
 def test_a_submission_that_is_given_up_is_not_graded_instead_of_zero(job: Job) -> None:
     given_up = write_result(
-        job, *not_graded(job, "2 workers died while they graded this submission.", "KilledWorker\n")
+        job, *not_graded_result(job, "2 workers died while they graded this submission.", "KilledWorker\n")
     )
     assert given_up.status is Status.NOT_GRADED
     assert given_up.diagnosis.sentence.startswith("2 workers died while they graded this submission. This is not a")
@@ -179,7 +179,7 @@ def test_a_submission_that_intake_rejects_is_unclear_and_needs_no_worker(tmp_pat
     (tmp_path / "bob.zip").write_bytes(b"none")
     with pytest.raises(StudentError) as excinfo:
         read_submission(tmp_path / "bob.zip", CHAPTER)
-    result = refused(Job(tmp_path / "bob.zip", CHAPTER, "bob", 7, tmp_path), excinfo.value.diagnosis)
+    result = unclear_result(Job(tmp_path / "bob.zip", CHAPTER, "bob", 7, tmp_path), excinfo.value.diagnosis)
     assert (result.status, result.score, result.diagnosis) == (Status.UNCLEAR, 0.0, excinfo.value.diagnosis)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from nbformat import NotebookNode
 
-from autograder.author.course.contract_rules import broken_cells, broken_coverage
+from autograder.author.course.contract_rules import cells_findings, coverage_findings
 from autograder.author.course.findings import Finding
 from autograder.author.course.sync import chapters
 from autograder.suite import Check, Visibility, suites
@@ -38,7 +38,7 @@ def check(id: str, *covers: str) -> Check:
 
 
 def broken(name: str, notebook: NotebookNode, checks: Sequence[Check]) -> list[Finding]:
-    return [*broken_cells(name, notebook), *broken_coverage(name, notebook, checks, {})]
+    return [*cells_findings(name, notebook), *coverage_findings(name, notebook, checks, {})]
 
 
 def messages(notebook: NotebookNode, *checks: Check) -> list[str]:

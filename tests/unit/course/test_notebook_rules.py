@@ -6,14 +6,14 @@ import pytest
 from nbformat import NotebookNode
 from nbformat.v4 import new_output
 
-from autograder.author.course.notebook_rules import broken_rules
+from autograder.author.course.notebook_rules import rules_findings
 from tests.notebooks.alternative_texts import images_without_alt
 
 from .notebooks import code, grade, manual, notebook, prose, solution
 
 
 def messages(notebook: NotebookNode) -> str:
-    return "\n".join(str(finding) for finding in broken_rules("n.ipynb", notebook))
+    return "\n".join(str(finding) for finding in rules_findings("n.ipynb", notebook))
 
 
 def test_a_clean_notebook_has_no_findings() -> None:

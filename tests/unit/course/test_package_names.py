@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from autograder.author.course.new import write_chapter
-from autograder.author.course.package_names import is_package_name, taken_by
+from autograder.author.course.package_names import is_package_name, owner_of
 from autograder.exceptions import UsageError
 
 
@@ -28,18 +28,18 @@ from autograder.exceptions import UsageError
     ],
 )
 def test_a_name_that_exists_elsewhere_is_taken(name: str, owner: str) -> None:
-    assert taken_by(name) == owner
+    assert owner_of(name) == owner
 
 
 @pytest.mark.parametrize("name", ["nearest", "mapping", "launch_lab", "my_robot_package"])
 def test_other_names_are_free(name: str) -> None:
-    assert taken_by(name) == ""
+    assert owner_of(name) == ""
 
 
 def test_a_plain_folder_on_the_path_does_not_occupy_a_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "mapping").mkdir()
     monkeypatch.syspath_prepend(tmp_path)
-    assert taken_by("mapping") == ""
+    assert owner_of("mapping") == ""
 
 
 @pytest.mark.parametrize("name", ["", "2d", "Robot", "a-b", "a__b", "a_", "import", "café", "a/b"])

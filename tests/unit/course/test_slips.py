@@ -150,6 +150,13 @@ SLIPS = [
     (NOTEBOOK, '"nbformat": 4,', '"nbformat": 4', "331", "is not JSON: Expecting ',' delimiter"),
     (NOTEBOOK, '"exercise": "exercise"', '"exercise": "exercises"', "313", "the notebook has no cell 'exercises'"),
     ("worlds/hall.yaml", None, "name: hall\nboxs: []\n", "2", "the world has no field 'boxs'. Did you mean 'boxes'?"),
+    (
+        MUTANTS,
+        "find: min(filter",
+        "find: nearest(scan)",
+        "7",
+        "'nearest(scan)' occurs 2 times in mapping/mapping/nearest.py, and",
+    ),
 ]
 
 
@@ -213,7 +220,9 @@ def slip(course: Path, file: str, text: str | None, replacement: str) -> Callabl
     return revert
 
 
-@pytest.mark.promise("names the file and line of every mistake")
+@pytest.mark.promise(
+    "names the file and line of every mistake", "`course check` finds a text that does not occur in the reference"
+)
 @pytest.mark.parametrize(
     ("file", "text", "replacement", "line", "message"), SLIPS, ids=[each[4][:40] for each in SLIPS]
 )

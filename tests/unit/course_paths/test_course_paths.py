@@ -70,11 +70,11 @@ def test_an_installed_autograder_uses_the_course_that_contains_the_working_folde
     chapter.mkdir(parents=True)
     monkeypatch.chdir(chapter)
     monkeypatch.delenv(course_paths.COURSE_VARIABLE, raising=False)
-    assert course_paths._chosen() == course_paths.ROOT  # the one around the autograder comes first
+    assert course_paths._course_folder() == course_paths.ROOT  # the one around the autograder comes first
     monkeypatch.setattr(course_paths, "ROOT", tmp_path / "site-packages")
-    assert course_paths._chosen() == tmp_path
+    assert course_paths._course_folder() == tmp_path
     monkeypatch.setenv(course_paths.COURSE_VARIABLE, str(chapter))
-    assert course_paths._chosen() == chapter
+    assert course_paths._course_folder() == chapter
 
 
 @pytest.mark.slow  # it imports all of them

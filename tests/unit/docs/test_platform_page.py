@@ -10,7 +10,7 @@ import pytest
 
 from autograder.course_paths import ROOT
 from autograder.ros.distribution import DISTRIBUTION
-from autograder.ros.ros2.main import STAND_INS
+from autograder.ros.ros2.main import STANDINS_FOLDER
 
 SCRIPT = runpy.run_path(str(ROOT / "docs" / "platform_page.py"))
 LOCK, locked = SCRIPT["LOCK"], SCRIPT["locked"]
@@ -56,6 +56,6 @@ def test_the_lock_installs_the_platforms_versions_or_the_page_gives_the_reason(p
 @pytest.mark.parametrize("name", SCRIPT["LAUNCH"])
 def test_each_name_listed_as_not_covered_raises_an_error_that_says_so(name: str) -> None:
     module, _, attribute = name.rpartition(".")
-    program = f"import sys; sys.path.insert(0, {str(STAND_INS)!r})\nfrom {module} import {attribute}"
+    program = f"import sys; sys.path.insert(0, {str(STANDINS_FOLDER)!r})\nfrom {module} import {attribute}"
     completed = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert f"'{name}' is not covered: this is the course's stand-in" in completed.stderr

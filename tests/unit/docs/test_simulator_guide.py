@@ -6,13 +6,16 @@ import re
 import runpy
 import shutil
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from sim.__main__ import main
 from sim.bridge.settings import SETTINGS
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
+EXAMPLE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 TEXT = (DOCS / "simulator.md").read_text(encoding="utf-8")
 
 
@@ -24,6 +27,23 @@ def test_the_examples_run_and_draw_the_pictures_that_the_guide_shows(tmp_path: P
     pictures = re.findall(r"!\[[^\]]+\]\((\S+)\)", TEXT)
     assert pictures
     assert all((tmp_path / name).is_file() for name in pictures)
+
+
+@pytest.mark.slow
+def test_the_environment_of_the_guide_ends_at_a_collision_or_after_a_minute(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(DOCS)
+    (code,) = (code for code in EXAMPLE.findall(TEXT) if "import gymnasium" in code)
+    names: dict[str, Any] = {}
+    exec(code, names)
+    for action, end in (((1.0, 0.0), (-10.0, True, False)), ((-1.0, 1.0), (0.0, False, True))):
+        environment = names["Kitchen"]()
+        environment.reset(seed=1)
+        over = False
+        while not over:
+            _, *result, _ = environment.step(np.float32(action))
+            over = any(result[1:])
+        assert tuple(result) == end
+    assert environment.state.time_ns == 60_000_000_000
 
 
 def test_the_guide_names_exactly_the_parameters_of_the_node() -> None:

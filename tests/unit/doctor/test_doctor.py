@@ -21,10 +21,10 @@ from autograder.run.sandbox.isolation import namespaces_failure
 
 VENV = Path("/course/.venv")
 WHEELS = RosEnvironment("wheels", (VENV,), VENV / "lib/python3.12/site-packages/rclpy")
-SOURCED = RosEnvironment("sourced", (Path("/opt/ros/jazzy"),), Path("/opt/ros/jazzy/lib/rclpy"))
+SOURCED = RosEnvironment("sourced", (Path("/opt/ros/sourced"),), Path("/opt/ros/sourced/lib/rclpy"))
 FILES = {
-    VENV / "share/rclpy/package.xml": "<package><version>7.1.6</version></package>",
-    Path("/opt/ros/jazzy/share/rclpy/package.xml"): "<package><version>7.1.4</version></package>",
+    VENV / "share/rclpy/package.xml": f"<package><version>{DISTRIBUTION.rclpy}.6</version></package>",
+    Path("/opt/ros/sourced/share/rclpy/package.xml"): f"<package><version>{DISTRIBUTION.rclpy}.4</version></package>",
     Path("/usr/include/python3.12/Python.h"): "",
 }
 VERSIONS: dict[str, str] = {package.name: package.version for package in DISTRIBUTION.packages}
@@ -157,14 +157,14 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "ROS 2",
         {"find_ros": lambda: SOURCED},
         Status.WEAK,
-        "rclpy 7.1.4; the wheels are also installed",
+        f"rclpy {DISTRIBUTION.rclpy}.4; the wheels are also installed",
         "make setup",
     ),
     "the wheels of a later ROS": (
         "ROS 2",
         {"read": {VENV / "share/rclpy/package.xml": "<version>9.2.0</version>"}.get},
         Status.MISSING,
-        "rclpy 9.2.0 in /course/.venv is not Jazzy's",
+        f"rclpy 9.2.0 in /course/.venv is not {DISTRIBUTION.title}'s",
         "make setup",
     ),
     "half an installation": ("ROS 2", {"read": {}.get}, Status.MISSING, "no package.xml", "make setup"),
@@ -205,7 +205,7 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         {"find_ros": lambda: SOURCED, "run": fake_run({"import rclpy": CommandResult(-11, "")})},
         Status.MISSING,
         "exit status -11",
-        "source /opt/ros/jazzy/setup.bash",
+        f"source {DISTRIBUTION.setup}",
     ),
     "nodes kept to this host": (
         "ROS variables",
@@ -261,7 +261,8 @@ LACKS: dict[str, tuple[str, dict[str, Any], Status, str, str]] = {
         "versions",
         {"package": {**VERSIONS, "pytest": "9.0.0"}.get},
         Status.WEAK,
-        "different from Ubuntu 24.04, the platform of Jazzy: pytest 9.0.0 for 7.4.4",
+        f"different from {DISTRIBUTION.platform}, the platform of {DISTRIBUTION.title}: "
+        f"pytest 9.0.0 for {VERSIONS['pytest']}",
         "make setup",
     ),
     "no flake8": (
@@ -399,7 +400,7 @@ def test_a_newest_release_and_a_release_without_a_newest_folder_are_fine() -> No
         assert finding("release", read=read) == Finding("release", Status.OK, "version 2026-05-04")
 
 
-def test_a_sourced_jazzy_is_fine_and_has_no_wheels_to_fix() -> None:
+def test_a_sourced_ros_is_fine_and_has_no_wheels_to_fix() -> None:
     without_environment = complete_machine(find_ros=lambda: SOURCED, prefix=Path("/course/bare"))
     findings = examine(without_environment)
     assert {reported.status for reported in findings} == {Status.OK}
@@ -494,7 +495,7 @@ def test_a_broken_python_environment_is_detected_on_this_machine(tmp_path: Path)
     environ = {
         **os.environ,
         "PYTHONPATH": str(tmp_path),
-        "ROS_DISTRO": "jazzy",
+        "ROS_DISTRO": DISTRIBUTION.name,
         "AMENT_PREFIX_PATH": f"{tmp_path}:{sys.prefix}",
     }
     completed = subprocess.run([sys.executable, "-c", code], env=environ, capture_output=True, text=True, timeout=120)

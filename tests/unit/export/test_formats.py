@@ -18,6 +18,7 @@ from autograder.exceptions import UsageError
 from autograder.report.export import FORMATS, formats, write
 from autograder.report.feedback.text import NOT_GRADED
 from autograder.result.model import Artifact, CheckResult, Result
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.suite import Check, Outcome
 
 MakeResult = Callable[..., Result]
@@ -113,7 +114,7 @@ def test_gradescope_gets_the_score_and_a_test_for_each_check(a_class: Class, tmp
         "it kept driving: 0.08 m from the north wall",
         "Hint: Where is 0 rad in a scan?",
         "Hint: Compare the smallest forward range with 1.0.",
-        "https://docs.ros.org/en/jazzy/p/sensor_msgs/",
+        f"{DISTRIBUTION.docs}/p/sensor_msgs/",
     ]
     assert alice["tests"][3]["tags"] == ["safety", "not_checked"]
     assert bob["output"] == "The package does not build: setup.py line 3."

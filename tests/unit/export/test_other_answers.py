@@ -11,7 +11,7 @@ import pytest
 from autograder import course_paths
 from autograder.exceptions import UsageError
 from autograder.report.export import write
-from autograder.report.other_answers import SHOWN, other_answers
+from autograder.report.other_answers import INDEX_FILE, other_answers
 from autograder.result.model import Result
 from autograder.suite import suites
 
@@ -63,7 +63,7 @@ def test_a_mistake_in_the_list_of_shown_answers_is_named(
     variants = tmp_path / "ch02_nodes" / "variants"
     (variants / "states").mkdir(parents=True)
     if text is not None:
-        (variants / SHOWN).write_text(text)
+        (variants / INDEX_FILE).write_text(text)
     monkeypatch.setitem(vars(course_paths), "CHECKS", tmp_path)  # `setattr` would leave the computed value there
     with pytest.raises(UsageError, match=message):
         other_answers("02_nodes")

@@ -16,6 +16,7 @@ from autograder.exceptions import UsageError
 from autograder.report import feedback
 from autograder.report.feedback.text import NOT_GRADED
 from autograder.result.model import Artifact, Build, CheckResult, Result, from_json
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.run.exchanges import Exchange
 from autograder.suite import Check, Outcome
 from autograder.suite.contract import contract
@@ -130,7 +131,7 @@ def test_hints_are_folded_one_inside_the_other_and_the_page_to_read_is_linked(
     html, page = path.read_text(encoding="utf-8"), Page(path)
     assert re.search(r"<details[^>]*><summary>Hint</summary>.*<details[^>]*><summary>Second hint</summary>", html, re.S)
     assert "open" not in page.all("class")
-    assert "https://docs.ros.org/en/jazzy/p/sensor_msgs/" in page.all("href")
+    assert f"{DISTRIBUTION.docs}/p/sensor_msgs/" in page.all("href")
 
 
 @pytest.mark.promise("Feedback quotes them.", "which requirement in the notebook it did not meet")
@@ -279,7 +280,7 @@ def test_a_page_loads_nothing_from_the_network(
     page = Page(feedback.write(make_result(artifacts=(track(tmp_path),)), tmp_path))
     assert all(source.startswith("data:") for source in page.all("src"))
     assert "default-src 'none'" in " ".join(page.all("content"))
-    assert [href for href in page.all("href") if "://" in href] == ["https://docs.ros.org/en/jazzy/p/sensor_msgs/"]
+    assert [href for href in page.all("href") if "://" in href] == [f"{DISTRIBUTION.docs}/p/sensor_msgs/"]
 
 
 @pytest.mark.promise("give every student a feedback page")

@@ -9,7 +9,7 @@ from autograder.run.sandbox import Isolation
 
 
 def test_a_job_survives_conversion_to_json(tmp_path: Path) -> None:
-    options = Options(("starts", "ten_hertz"), first_loss=True, pictures=False)
+    options = Options(("starts", "ten_hertz"), exit_first=True, pictures=False)
     out, scratch = tmp_path / "out", tmp_path / "scratch"
     job = Job(tmp_path / "größe 漢", "02_nodes", "Zoë", 7, out, Isolation.PROCESS, options, 450.0, scratch)
     assert Job.from_json(job.to_json()) == job

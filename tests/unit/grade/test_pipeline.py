@@ -34,7 +34,7 @@ class Worker:
     def __call__(self, job: Job) -> WorkerReport:
         self.alone.append(pipeline._machine._turn.locked())
         self.times.append(job.seconds)
-        self.last.append(job.last)
+        self.last.append(job.is_last_try)
         result = self.remaining.pop(0)
         if result is None:
             return FAILED

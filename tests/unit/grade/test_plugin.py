@@ -34,13 +34,15 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grade:
     monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
     monkeypatch.setenv("PYTEST_PLUGINS", "no_such_plugin")
 
-    def grade_text(text: str, options: Options = WHOLE_SUITE, last: bool = False, seed: int = 7) -> GradingPlugin:
+    def grade_text(
+        text: str, options: Options = WHOLE_SUITE, is_last_try: bool = False, seed: int = 7
+    ) -> GradingPlugin:
         # A unique name: pytest keeps the modules that this process has imported.
         path = tmp_path / "chapter" / "hidden" / f"checks_{next(_NUMBERS)}.py"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(HEAD + textwrap.dedent(text))
         workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
-        plugin = GradingPlugin(workspace, seed, Artifacts(tmp_path / "out"), options=options, last=last)
+        plugin = GradingPlugin(workspace, seed, Artifacts(tmp_path / "out"), options=options, is_last_try=is_last_try)
         run((path,), plugin)
         return plugin
 
@@ -51,7 +53,7 @@ def _outcomes(plugin: GradingPlugin) -> dict[str, tuple[Outcome, float]]:
     return {name: (result.outcome, result.points) for name, result in plugin.results.items()}
 
 
-def test_with_first_loss_no_check_runs_after_a_failed_one(grade: Grade) -> None:
+def test_with_exit_first_no_check_runs_after_a_failed_one(grade: Grade) -> None:
     text = """
         @check(points=2, group="g")
         def test_right():
@@ -67,9 +69,9 @@ def test_with_first_loss_no_check_runs_after_a_failed_one(grade: Grade) -> None:
             '''It comes later.'''
     """
     assert list(grade(text).results) == ["right", "wrong", "later"]
-    plugin = grade(text, Options(first_loss=True))
+    plugin = grade(text, Options(exit_first=True))
     assert (list(plugin.results), plugin.is_finished, plugin.failures) == (["right", "wrong"], True, [])
-    plugin = grade(text, Options(only=("right", "later"), first_loss=True))
+    plugin = grade(text, Options(only=("right", "later"), exit_first=True))
     assert (list(plugin.results), plugin.is_finished) == (["right", "later"], False)
 
 
@@ -227,11 +229,11 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
     grade: Grade, phase: str
 ) -> None:
     plugin = grade(f"""
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @pytest.fixture(scope="{"module" if phase == "module" else "function"}")
         def answer():
-            if "{phase}" != "check": hold("What /add answered")
+            if "{phase}" != "check": record_data("What /add answered")
 
         @check(points=1, group="g")
         def test_reads_first(answer):
@@ -240,7 +242,7 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
         @check(points=1, group="g")
         def test_reads(answer):
             '''It is so.'''
-            if "{phase}" == "check": hold("What /add answered")
+            if "{phase}" == "check": record_data("What /add answered")
             secret = 10**400 * 1.0
 
         @check(points=1, group="g")
@@ -257,12 +259,12 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
 
 def test_a_fraction_that_a_student_s_data_make_impossible_fails_only_that_check(grade: Grade) -> None:
     plugin = grade("""
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            hold("What /add answered")
+            record_data("What /add answered")
             expect(False, "wrong", fraction=float("nan"))
     """)
     assert plugin.results["reads"].outcome is Outcome.FAILED
@@ -273,12 +275,12 @@ def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_
     grade: Grade,
 ) -> None:
     plugin = grade("""
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            hold("What /add answered")
+            record_data("What /add answered")
 
         @check(points=1, group="g")
         def test_other():
@@ -292,12 +294,12 @@ def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_
 @pytest.mark.parametrize("error", ["GraderError('lost')", "OSError(5, 'EIO')", "RuntimeError()", "SystemExit(0)"])
 def test_an_error_that_data_cannot_cause_is_the_grader_s_failure(grade: Grade, error: str) -> None:
     plugin = grade(f"""
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            hold("What /add answered")
+            record_data("What /add answered")
             raise {error}
         """)
     assert (len(plugin.failures), plugin.unjudged) == (1, {})
@@ -306,7 +308,7 @@ def test_an_error_that_data_cannot_cause_is_the_grader_s_failure(grade: Grade, e
 def test_an_error_of_a_program_or_the_machine_counts_as_the_program_s_in_the_last_try(grade: Grade) -> None:
     text = """
         from autograder.exceptions import DoubtfulError
-        from autograder.submission.reading import hold
+        from autograder.submission.reading import record_data
 
         @check(points=1, group="g")
         def test_matches():
@@ -316,7 +318,7 @@ def test_an_error_of_a_program_or_the_machine_counts_as_the_program_s_in_the_las
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            hold("What /add answered")
+            record_data("What /add answered")
             raise RuntimeError
 
         @check(points=1, group="g")
@@ -325,7 +327,7 @@ def test_an_error_of_a_program_or_the_machine_counts_as_the_program_s_in_the_las
     """
     plugin = grade(text)
     assert (len(plugin.failures), list(plugin.results)) == (1, ["matches"]), "it ends at once, and is made again"
-    plugin = grade(text, last=True)
+    plugin = grade(text, is_last_try=True)
     assert plugin.failures == []
     assert [result.outcome for result in plugin.results.values()] == [Outcome.FAILED, Outcome.FAILED, Outcome.PASSED]
     assert plugin.results["matches"].message == "They did not discover each other."

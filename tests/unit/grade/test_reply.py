@@ -17,7 +17,7 @@ from autograder.grade import executed_notebook, reply
 from autograder.grade.bounded_json import NOTEBOOK_VALUES, read_json
 from autograder.grade.executed_notebook import MAX_BYTES, decode, encode
 from autograder.grade.job import Job
-from autograder.grade.reply import ReplyError, checked
+from autograder.grade.reply import ReplyError, check_reply
 from autograder.grade.run_notebook import MAX_VALUES
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.run.sandbox.limits import MIB
@@ -46,7 +46,7 @@ def test_an_error_caused_by_a_reply_does_not_end_the_grading_of_a_class(
             reply, "from_json", lambda data, source, error=error: (_ for _ in ()).throw(error("of data"))
         )
         with pytest.raises(ReplyError, match=f"cannot be checked: {error.__name__}: .*of data"):
-            checked(files(result), JOB)
+            check_reply(files(result), JOB)
 
 
 @pytest.mark.parametrize(
@@ -72,10 +72,10 @@ def test_a_string_counts_as_one_value() -> None:
 
 @pytest.mark.parametrize("number", ["1" * 101, "NaN", "-Infinity", "1e999"])
 def test_a_result_with_a_number_that_no_page_can_show_is_refused(result: Result, number: str) -> None:
-    assert checked(files(result), JOB) == result
+    assert check_reply(files(result), JOB) == result
     text = json.dumps(replace(result, seconds=123.25).to_json()).replace("123.25", number)
     with pytest.raises(ReplyError, match=r"it holds (a|the) number"):
-        checked({"result.json": text.encode()}, JOB)
+        check_reply({"result.json": text.encode()}, JOB)
 
 
 @pytest.mark.parametrize("name", ["result.json", "notebook.ipynb", "a.run.json"])
@@ -83,18 +83,18 @@ def test_the_values_of_each_file_are_counted_before_it_is_parsed(result: Result,
     reply_files = files(replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x", run="a.run.json"),)))
     values = b'{"cells": [' + b"[]," * NOTEBOOK_VALUES + b"0]}"
     with pytest.raises(ReplyError, match=r"more than [0-9,]+ values|cannot identify image"):
-        checked({**reply_files, "a.png": b"", "a.run.json": b"{}", name: values}, JOB)
+        check_reply({**reply_files, "a.png": b"", "a.run.json": b"{}", name: values}, JOB)
 
 
 def test_a_large_result_is_refused(result: Result) -> None:
     with pytest.raises(ReplyError, match="a result of 8,"):
-        checked({"result.json": b" " * (8 * MIB + 1)}, JOB)
+        check_reply({"result.json": b" " * (8 * MIB + 1)}, JOB)
 
 
 def test_a_result_that_names_a_file_a_thousand_times_is_refused(result: Result) -> None:
     repeated = replace(result, artifacts=(Artifact("a.png", "track", "0" * 64, "x"),) * 1000)
     with pytest.raises(ReplyError, match="shows its 1 files 1000 times"):
-        checked(files(repeated, **{"a.png": bytes(MIB)}), JOB)
+        check_reply(files(repeated, **{"a.png": bytes(MIB)}), JOB)
 
 
 def test_a_notebook_with_the_maximum_of_outputs_and_lines_is_accepted(result: Result) -> None:
@@ -104,7 +104,7 @@ def test_a_notebook_with_the_maximum_of_outputs_and_lines_is_accepted(result: Re
     cells = [new_code_cell("\n" * 2 * MIB, outputs=lines), {**new_code_cell(), "outputs": values}]
     data = encode(NotebookNode({**new_notebook(), "cells": list(map(NotebookNode, cells))}))
     assert len(data) < MAX_BYTES
-    checked(files(result, **{"notebook.ipynb": data}), JOB)
+    check_reply(files(result, **{"notebook.ipynb": data}), JOB)
     assert decode(data)[0].outputs == lines
 
 
@@ -138,4 +138,4 @@ def test_jupyter_and_the_grader_read_each_other_s_notebooks() -> None:
 )
 def test_a_file_that_is_not_a_notebook_is_rejected(result: Result, data: bytes) -> None:
     with pytest.raises(ReplyError, match="the notebook in a worker's reply cannot be read"):
-        checked(files(result, **{"notebook.ipynb": data}), JOB)
+        check_reply(files(result, **{"notebook.ipynb": data}), JOB)

@@ -19,7 +19,7 @@ class Program:
     def __init__(self, written: bytes) -> None:
         self.text = written
 
-    def written(self, start: int) -> bytes:
+    def output_from(self, start: int) -> bytes:
         return self.text[start:]
 
 
@@ -49,7 +49,7 @@ class Talking:
 
 
 def recorded_lines(harness: Talking) -> tuple[tuple[float, str], ...]:
-    return drive(cast("Harness", harness), WORLD, 0.5).recording.said
+    return drive(cast("Harness", harness), WORLD, 0.5).recording.log_lines
 
 
 def test_each_line_has_the_instant_of_its_line_end() -> None:

@@ -16,7 +16,7 @@ from autograder.exceptions import StudentError
 from autograder.harness import grader_node
 from autograder.harness.grader_node import GraderNode, requested_qos
 from autograder.harness.inflow import Inflow
-from autograder.run.sandbox.limits import RECEIVED, Received
+from autograder.run.sandbox.limits import RECEIVED_MESSAGES, MessageLimits
 
 DOMAIN = 87
 SECONDS = 30.0  # of real time, as a deadline for events that must happen
@@ -31,7 +31,7 @@ def exceed_limit(inflow: Inflow, topic: str, size: int) -> str:
 
 
 def test_one_message_too_many_names_the_topic_with_the_most_messages() -> None:
-    inflow = Inflow(Received(messages=10))
+    inflow = Inflow(MessageLimits(messages=10))
     for topic in ("/loud", "/loud", "/quiet") * 3:
         inflow.add(topic, 8)
     inflow.add("/loud", 8)
@@ -41,8 +41,8 @@ def test_one_message_too_many_names_the_topic_with_the_most_messages() -> None:
 def test_the_total_size_of_messages_is_bounded() -> None:
     inflow = Inflow()
     for _ in range(4):
-        inflow.add("/map", RECEIVED.size // 4)
-    sentence = exceed_limit(inflow, "/map", RECEIVED.size // 4)
+        inflow.add("/map", RECEIVED_MESSAGES.size // 4)
+    sentence = exceed_limit(inflow, "/map", RECEIVED_MESSAGES.size // 4)
     assert "5 messages of 80.0 MiB in all on /map" in sentence
     assert "100,000 messages and 64 MiB" in sentence
 
@@ -69,7 +69,7 @@ def grader() -> Iterator[GraderNode]:
 def test_the_grader_stops_receiving_from_a_program_that_publishes_without_end(
     programs_node: Node, grader: GraderNode, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(grader, "_inflow", Inflow(Received(messages=50)))
+    monkeypatch.setattr(grader, "_inflow", Inflow(MessageLimits(messages=50)))
     monkeypatch.setattr(grader_node, "DEPTH", 20)
     received: list[String] = []
     grader.subscribe("/flood", String, lambda message, _: received.append(message), requested_qos([]))

@@ -14,7 +14,7 @@ def test_a_flood_instead_of_an_exit_status_is_not_kept() -> None:
     ours, theirs = os.pipe()
     os.set_blocking(ours, False)
     harness = LaunchHarness.__new__(LaunchHarness)
-    harness._pipe, harness._status_text = ours, b""
+    harness._status_pipe, harness._status_text = ours, b""
     try:
         for part in (b"1" * 40, b"1" * 20_000):
             assert harness.status is None

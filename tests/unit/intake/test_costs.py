@@ -17,7 +17,7 @@ from types import FrameType
 import pytest
 
 from autograder.exceptions import StudentError
-from autograder.grade import apart
+from autograder.grade import isolated_reader
 from autograder.run.sandbox import Isolation
 from autograder.submission import intake
 from autograder.submission.intake import SubmittedFile, detect_layout, read_submission
@@ -96,7 +96,7 @@ def test_a_submission_that_crashes_its_reader_does_not_end_the_grading_of_a_clas
     monkeypatch.setattr(intake, "read_contents", fail)
     with pytest.raises(StudentError, match="Your submission cannot be read: MemoryError"):
         read_submission(tmp_path, CHAPTER)
-    assert apart.read_digests(tmp_path, CHAPTER, Isolation.PROCESS) is None
+    assert isolated_reader.read_digests(tmp_path, CHAPTER, Isolation.PROCESS) is None
 
 
 def steps_of(work: Callable[[], object]) -> int:

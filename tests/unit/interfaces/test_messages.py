@@ -96,7 +96,7 @@ def test_a_message_of_many_messages_is_refused_before_they_are_made() -> None:
 def test_a_fast_cdr_of_another_layout_is_an_error_of_the_grader(monkeypatch: pytest.MonkeyPatch) -> None:
     type_support.require_known_layout()
     type_support.require_known_layout.cache_clear()
-    monkeypatch.setattr(type_support, "PLACES", type_support.PLACES + 8)
+    monkeypatch.setattr(type_support, "POSITIONS_OFFSET", type_support.POSITIONS_OFFSET + 8)
     with pytest.raises(GraderError, match="Fast CDR"):
         type(package().msg.Inner).__import_type_support__()
 

@@ -14,7 +14,7 @@ import nbformat
 import pytest
 
 from autograder.cli import main
-from autograder.grade.apart import code
+from autograder.grade.isolated_reader import code
 from autograder.lms import similar
 from autograder.lms.similar import compare, write_page
 from autograder.submission.intake import SubmittedFile, detect_layout

@@ -70,13 +70,13 @@ def test_waiting_callbacks_continue_when_ready_in_the_order_of_their_start() -> 
 def test_no_more_callbacks_wait_than_there_are_threads() -> None:
     threads, gate = CallbackThreads(2), threading.Event()
     for _ in range(2):
-        assert not threads.full
+        assert not threads.is_full
         threads.start(Task(lambda: wait(gate.is_set)))
-    assert threads.full
+    assert threads.is_full
     gate.set()
     while threads.resume():
         pass
-    assert not threads.full
+    assert not threads.is_full
 
 
 def test_an_exception_of_a_callback_is_raised_even_after_it_has_waited() -> None:

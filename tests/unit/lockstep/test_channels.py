@@ -16,7 +16,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from autograder.run.lockstep.lockstep_host import channels
-from autograder.run.lockstep.protocol import answers
+from autograder.run.lockstep.protocol import response_channel
 
 SECONDS = 30.0
 PROFILES = [
@@ -62,7 +62,7 @@ def test_another_type_or_topic_is_another_channel() -> None:
 def test_requests_and_responses_are_named_alike_by_host_and_grader() -> None:
     request = channels.request("/ask", Trigger)
     assert not channels.is_topic(request)
-    assert answers(request, "0a") == channels.response("/ask", Trigger, "0a")
+    assert response_channel(request, "0a") == channels.response("/ask", Trigger, "0a")
     own_response = channels.response("/ask", Trigger, channels.OWN)
     assert channels.with_process_prefix((own_response, request), "0a") == (
         channels.response("/ask", Trigger, "0a"),

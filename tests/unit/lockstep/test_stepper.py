@@ -67,9 +67,9 @@ def test_a_reply_to_another_number_of_events_is_refused(host: Open, sent: str) -
 def test_a_program_that_delays_each_step_a_little_uses_up_the_time_budget(
     host: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(patience._Account, "held", 0.0)
-    monkeypatch.setattr(patience._Account, "deadline", time.monotonic() + 600.0)
-    monkeypatch.setattr(patience, "HELD_SECONDS", 1.0)
+    monkeypatch.setattr(patience._Budget, "answer_seconds", 0.0)
+    monkeypatch.setattr(patience._Budget, "deadline", time.monotonic() + 600.0)
+    monkeypatch.setattr(patience, "MAX_ANSWER_SECONDS", 1.0)
     program = host(rf"""
 import time
 while os.read(read, 999):

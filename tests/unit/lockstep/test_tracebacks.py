@@ -7,7 +7,7 @@ import pytest
 from autograder.diagnosis import Kind
 from autograder.run.lockstep.failures import diagnose_crash
 from autograder.run.lockstep.protocol import Crash
-from autograder.run.lockstep.tracebacks import own_frames, with_source_paths
+from autograder.run.lockstep.tracebacks import student_frames, with_source_paths
 
 INSTALL = "/tmp/cell-1/ws/install/my_robot"
 MODULES = f"{INSTALL}/lib/python3.12/site-packages"
@@ -38,7 +38,7 @@ ZeroDivisionError: division by zero"""
 
 
 def test_only_the_students_frames_are_kept_with_their_lines_and_the_error() -> None:
-    assert own_frames(CRASH) == OWN
+    assert student_frames(CRASH) == OWN
 
 
 def test_a_diagnosis_shows_the_students_frames() -> None:
@@ -60,16 +60,16 @@ def test_a_traceback_of_a_syntax_error_keeps_the_wrong_line() -> None:
 
 def test_a_traceback_without_a_file_of_the_student_is_unchanged() -> None:
     traceback = f"{LOADER}ImportError: no such entry point\n"
-    assert own_frames(traceback) == traceback
+    assert student_frames(traceback) == traceback
 
 
 def test_files_that_rosidl_generated_are_not_shown_as_the_students() -> None:
     generated = f'  File "{MODULES}/my_robot/msg/_status.py", line 3, in level\n    assert False\n'
-    assert own_frames(CRASH.replace("ZeroDivisionError", f"{generated}ZeroDivisionError")) == OWN
+    assert student_frames(CRASH.replace("ZeroDivisionError", f"{generated}ZeroDivisionError")) == OWN
 
 
 def test_each_part_of_a_chain_of_exceptions_keeps_its_error() -> None:
-    lines = own_frames(f"{CRASH}\nDuring handling of the above exception, another exception occurred:\n\n{CRASH}")
+    lines = student_frames(f"{CRASH}\nDuring handling of the above exception, another exception occurred:\n\n{CRASH}")
     assert lines.count("ZeroDivisionError") == 2
     assert "During handling" in lines
     assert "frozen" not in lines
@@ -77,7 +77,7 @@ def test_each_part_of_a_chain_of_exceptions_keeps_its_error() -> None:
 
 def test_a_message_of_several_lines_is_kept() -> None:
     message = "ValueError: two lines\n    and this"
-    assert own_frames(CRASH.replace("ZeroDivisionError: division by zero", message)).endswith(message)
+    assert student_frames(CRASH.replace("ZeroDivisionError: division by zero", message)).endswith(message)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 
 from autograder.exceptions import UsageError
 from autograder.notebook import handing_in, submit
-from autograder.notebook.handing_in import SERVICE, TOKEN, HandInError, Receipt, hand_in, packed
+from autograder.notebook.handing_in import SERVICE, TOKEN, HandInError, Receipt, hand_in, make_zip
 from autograder.notebook.notices import Notice
 from autograder.submission.intake import SubmittedFile, read_files
 
@@ -80,15 +80,15 @@ def test_equal_files_make_equal_zips_and_keep_their_modes() -> None:
         SubmittedFile(PurePosixPath("ws/src/b"), b"b", True),
         SubmittedFile(PurePosixPath("ws/src/a"), b"a", False),
     ]
-    assert packed(files) == packed(files[::-1])
-    with zipfile.ZipFile(io.BytesIO(packed(files))) as archive:
+    assert make_zip(files) == make_zip(files[::-1])
+    with zipfile.ZipFile(io.BytesIO(make_zip(files))) as archive:
         assert archive.namelist() == ["ws/src/a", "ws/src/b"]
         assert [info.external_attr >> 16 for info in archive.infolist()] == [0o100644, 0o100755]
 
 
 def test_a_packed_answer_is_read_like_its_folder(answer: Path, tmp_path: Path) -> None:
     files = read_files(answer, CHAPTER)
-    (tmp_path / "answer.zip").write_bytes(packed(files))
+    (tmp_path / "answer.zip").write_bytes(make_zip(files))
     assert sorted(read_files(tmp_path / "answer.zip", CHAPTER), key=str) == sorted(files, key=str)
 
 

@@ -128,6 +128,7 @@ def test_appending_and_names_in_quotes_work_as_before(run: Run) -> None:
     assert Path("ws/a file.py").read_text() == SOLVED
 
 
+@pytest.mark.promise("`%%writefile` makes the folder `launch`.")
 def test_a_cell_makes_the_missing_folders_of_its_file_and_says_so(run: Run) -> None:
     file = "ws/src/new_pkg/launch/robot.launch.py"
     assert run(SOLVED, file) == f"Created the folder ws/src/new_pkg/launch\nWriting {file}\n"

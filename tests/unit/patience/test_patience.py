@@ -17,8 +17,8 @@ from autograder.run.sandbox.launcher import launch
 @pytest.fixture(autouse=True)
 def account(monkeypatch: pytest.MonkeyPatch) -> None:
     """Restore the account of waiting time after each test."""
-    for name in ("deadline", "total", "held"):
-        monkeypatch.setattr(patience._Account, name, getattr(patience._Account, name))
+    for name in ("deadline", "total", "answer_seconds"):
+        monkeypatch.setattr(patience._Budget, name, getattr(patience._Budget, name))
 
 
 def test_waits_are_limited_to_the_rest_of_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -38,17 +38,17 @@ def test_waits_are_limited_to_the_rest_of_the_budget(monkeypatch: pytest.MonkeyP
 
 def test_programs_that_stall_the_grading_use_up_its_budget() -> None:
     patience.begin(900.0)
-    patience.add_held(patience.HELD_SECONDS - 1.0)
+    patience.add_answer_time(patience.MAX_ANSWER_SECONDS - 1.0)
     patience.require()
-    assert not patience.is_held(0.5)
-    assert patience.is_held(1.5)
-    patience.add_held(1.5)
+    assert not patience.is_too_slow(0.5)
+    assert patience.is_too_slow(1.5)
+    patience.add_answer_time(1.5)
     with pytest.raises(StudentError, match="kept the grader waiting for 180 s in all"):
         patience.require()
 
 
 def test_without_a_grading_nothing_is_counted() -> None:
-    patience.add_held(1e6)
+    patience.add_answer_time(1e6)
     assert patience.bounded(30.0) == 30.0
     patience.require()
 

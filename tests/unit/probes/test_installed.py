@@ -44,7 +44,7 @@ def install(tmp_path: Path) -> Path:
 
 
 def test_all_installed_parts_of_a_package_are_listed(install: Path) -> None:
-    contents = installed.look(install, "lamp")
+    contents = installed.inspect_package(install, "lamp")
     assert contents.executables == ("lamp",)
     assert contents.misplaced == ("stray",)
     assert contents.modules == {"lamp", "lamp.nodes", "lamp.nodes.lamp", "test"}
@@ -59,7 +59,7 @@ def test_all_installed_parts_of_a_package_are_listed(install: Path) -> None:
 
 
 def test_a_package_that_was_not_installed_has_nothing(tmp_path: Path) -> None:
-    contents = installed.look(tmp_path / "install", "lamp")
+    contents = installed.inspect_package(tmp_path / "install", "lamp")
     assert (contents.executables, contents.modules, contents.marker, contents.shared) == ((), frozenset(), False, ())
     assert contents.read("package.xml") is None
 
@@ -67,12 +67,12 @@ def test_a_package_that_was_not_installed_has_nothing(tmp_path: Path) -> None:
 def test_a_record_behind_a_link_is_not_read(install: Path, tmp_path: Path) -> None:
     (tmp_path / "build" / "lamp").rename(tmp_path / "elsewhere")
     (tmp_path / "build" / "lamp").symlink_to(tmp_path / "elsewhere")
-    assert installed.look(install, "lamp").recorded == frozenset()
+    assert installed.inspect_package(install, "lamp").recorded == frozenset()
 
 
 def test_a_file_without_execute_permission_is_not_an_executable(install: Path) -> None:
     (install / "lamp/lib/lamp/lamp").chmod(0o644)
-    assert installed.look(install, "lamp").executables == ()
+    assert installed.inspect_package(install, "lamp").executables == ()
 
 
 def test_links_are_neither_listed_nor_read(install: Path, tmp_path: Path) -> None:
@@ -83,7 +83,7 @@ def test_links_are_neither_listed_nor_read(install: Path, tmp_path: Path) -> Non
     (share / "config/link.yaml").symlink_to(secret / "key.yaml")
     (share / "folder").symlink_to(secret)
     (install / "lamp/lib/lamp/link").symlink_to("/bin/sh")
-    contents = installed.look(install, "lamp")
+    contents = installed.inspect_package(install, "lamp")
     assert contents.shared == ("package.xml", "config/lamp.yaml")
     assert contents.executables == ("lamp",)
     assert contents.read("config/link.yaml") is None
@@ -92,4 +92,4 @@ def test_links_are_neither_listed_nor_read(install: Path, tmp_path: Path) -> Non
 
 def test_a_file_that_is_too_large_is_not_read(install: Path) -> None:
     (install / "lamp/share/lamp/config/lamp.yaml").write_bytes(b"#" * (installed.MAX_BYTES + 1))
-    assert installed.look(install, "lamp").read("config/lamp.yaml") is None
+    assert installed.inspect_package(install, "lamp").read("config/lamp.yaml") is None

@@ -45,7 +45,7 @@ def test_shown_arguments_are_read_with_description_default_and_choices() -> None
         "robot_name": Argument("robot_name", "who reports", "robot1", ()),
         "mode": Argument("mode", "What to do.", "drive", ("drive", "park")),
         "rest": Argument("rest", "", None, ()),
-        "topic": Argument("topic", "", None, ("a",), is_worked_out=True),
+        "topic": Argument("topic", "", None, ("a",), is_computed=True),
     }
 
 

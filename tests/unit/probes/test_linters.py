@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from autograder.harness import Workspace
-from autograder.probes.linters import expect_tidy, objections
-from autograder.probes.student_test_runs import take
+from autograder.probes.linters import expect_tidy, lint
+from autograder.probes.student_test_runs import read_source
 from autograder.ros import environment
 from autograder.ros.ros2.pkg_templates import PYTHON_TESTS
 from autograder.suite import CheckFailed
@@ -41,7 +41,7 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 def test_the_linters_report_nothing_about_a_clean_package(workspace: Workspace) -> None:
-    assert objections(workspace, take(workspace, "half")) == {}
+    assert lint(workspace, read_source(workspace, "half")) == {}
 
 
 def test_each_linter_names_its_first_finding_even_if_the_students_tests_report_none(
@@ -49,13 +49,13 @@ def test_each_linter_names_its_first_finding_even_if_the_students_tests_report_n
 ) -> None:
     untidy = TIDY.replace("half of x.", "half of x").replace("x / 2", "x/ 2")
     (workspace.root / "src/half/half.py").write_text(untidy)
-    findings = objections(workspace, take(workspace, "half"))
+    findings = lint(workspace, read_source(workspace, "half"))
     assert findings["test_flake8"] == "half.py:6:13: E225 missing whitespace around operator"
     assert findings["test_pep257"].startswith("half.py:5 in public function `half`: D400: ")
     with pytest.raises(
         CheckFailed, match=r"test_flake8 passes, but its linter finds .*: half\.py:6:13: E225"
     ) as excinfo:
-        expect_tidy(workspace, take(workspace, "half"), TESTS, fraction=0.5)
+        expect_tidy(workspace, read_source(workspace, "half"), TESTS, fraction=0.5)
     assert excinfo.value.fraction == 0.5
 
 
@@ -66,14 +66,14 @@ def test_the_tests_of_ros2_pkg_create_find_an_inserted_fault_and_empty_tests_do_
     (folder / "conftest.py").unlink()
     (folder / "test_flake8.py").write_text(PYTHON_TESTS["test_flake8.py"])
     (folder / "test_pep257.py").write_text(SILENT)
-    expect_tidy(workspace, take(workspace, "half"), TESTS[:1])
+    expect_tidy(workspace, read_source(workspace, "half"), TESTS[:1])
     with pytest.raises(CheckFailed, match=r"half/untidy\.py and test/untidy\.py of a copy .*, and test_pep257 passed"):
-        expect_tidy(workspace, take(workspace, "half"), TESTS)
+        expect_tidy(workspace, read_source(workspace, "half"), TESTS)
 
 
 def test_the_linters_ignore_a_conftest_and_check_it_like_any_other_file(workspace: Workspace) -> None:
     (workspace.root / "src/half/test/conftest.py").write_text(EMPTYING_CONFTEST.replace("Run none.", "Run none"))
-    findings = objections(workspace, take(workspace, "half"))
+    findings = lint(workspace, read_source(workspace, "half"))
     assert list(findings) == ["test_pep257"]
     assert findings["test_pep257"].startswith("test/conftest.py:")
 
@@ -96,7 +96,7 @@ UNUSED = TIDY.replace("\n\n\ndef", "\n\nimport os{}\n\n\ndef")
 def test_flake8_cannot_be_switched_off(workspace: Workspace, files: dict[str, str], finding: str) -> None:
     for path, text in files.items():
         (workspace.root / "src/half" / path).write_text(text)
-    assert objections(workspace, take(workspace, "half"))["test_flake8"].startswith(finding)
+    assert lint(workspace, read_source(workspace, "half"))["test_flake8"].startswith(finding)
 
 
 @pytest.mark.parametrize(
@@ -111,4 +111,4 @@ def test_flake8_cannot_be_switched_off(workspace: Workspace, files: dict[str, st
 def test_pep257_cannot_be_switched_off(workspace: Workspace, files: dict[str, str]) -> None:
     for path, text in files.items():
         (workspace.root / "src/half" / path).write_text(text)
-    assert "D400" in objections(workspace, take(workspace, "half"))["test_pep257"]
+    assert "D400" in lint(workspace, read_source(workspace, "half"))["test_pep257"]

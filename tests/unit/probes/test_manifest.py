@@ -48,13 +48,13 @@ def test_a_plain_depend_is_for_the_build_and_for_the_run() -> None:
     assert parsed.needs() == {"rclpy", "launch", "python3-pytest", "eigen", "ament_cmake"}
 
 
-def test_a_dependency_counts_if_its_condition_holds_in_jazzy() -> None:
+def test_a_dependency_counts_if_its_condition_holds_in_ros_2() -> None:
     text = TEXT.replace("<exec_depend>launch", '<exec_depend condition="$ROS_VERSION == {}">launch')
     assert manifest.parse(text.format(2)).needs("exec") == {"rclpy", "launch"}
     assert manifest.parse(text.format(1)).needs("exec") == {"rclpy"}
 
 
-def test_a_build_type_and_a_group_count_if_their_conditions_hold_in_jazzy() -> None:
+def test_a_build_type_and_a_group_count_if_their_conditions_hold_in_ros_2() -> None:
     own_type = "<build_type>ament_python</build_type>"
     other = '<build_type condition="$ROS_VERSION == 1">catkin</build_type>'
     assert manifest.parse(TEXT.replace(own_type, other + own_type)).build_type == "ament_python"

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from autograder.probes.parameters import (
     MAX_FILE,
-    SHOWN,
+    MAX_QUOTE,
     as_declared,
     differences,
     for_node,
@@ -77,7 +77,7 @@ def test_only_numbers_are_converted_to_the_declared_type() -> None:
 
 def test_a_text_of_a_node_is_shortened_to_one_line_of_bounded_length() -> None:
     assert shortened("two\nlines") == "two lines"
-    assert len(shortened("x" * 10_000)) == SHOWN + 1
+    assert len(shortened("x" * 10_000)) == MAX_QUOTE + 1
 
 
 def test_the_nodes_of_a_file_are_read_in_their_order(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from autograder.exceptions import StudentError
 from autograder.harness import Workspace
 from autograder.probes import student_test_runs
 from autograder.probes.student_test_reports import Report, TestRun
-from autograder.probes.student_test_runs import run, take
+from autograder.probes.student_test_runs import read_source, run
 from autograder.probes.versions import Version
 from autograder.ros import environment
 from autograder.run.sandbox import ExitReason
@@ -50,7 +50,7 @@ def write(workspace: Workspace, text: str, name: str = "test_half.py") -> None:
 
 
 def run_all(workspace: Workspace, *orders: TestRun) -> list[Report]:
-    return run(workspace, take(workspace, "half"), [replace(order, shown=True) for order in orders])
+    return run(workspace, read_source(workspace, "half"), [replace(order, is_public=True) for order in orders])
 
 
 def test_good_tests_pass_on_a_right_version_and_fail_on_a_wrong_one(workspace: Workspace) -> None:
@@ -99,7 +99,7 @@ TestNamed.__name__ = TestNamed.__qualname__ = SECRET
 
 def test_a_run_on_a_hidden_version_returns_no_text_of_its_own(workspace: Workspace) -> None:
     write(workspace, TELLTALE)
-    source, order = take(workspace, "half"), TestRun(("test_half.py",), WRONG)
+    source, order = read_source(workspace, "half"), TestRun(("test_half.py",), WRONG)
     hidden, repeated = run(workspace, source, [order, order])
     names = {name.partition("[#")[0] for name in hidden.claims.verdicts}
     assert names == {"test_half::test_known", "test_half::test_cases", "test_half::TestNamed::test_inside", "a test"}
@@ -118,7 +118,7 @@ def test_a_run_can_stop_at_the_first_failure_and_run_in_reverse_order(workspace:
     write(workspace, GOOD)
     first, backwards = run_all(
         workspace,
-        TestRun(("test_half.py",), WRONG, first_failure=True),
+        TestRun(("test_half.py",), WRONG, exit_first=True),
         TestRun(("test_half.py",), RIGHT, backwards=True),
     )
     assert first.executed == ("test_half::test_odd",)
@@ -276,11 +276,11 @@ def test_a_context_that_a_test_does_not_shut_down_is_detected(workspace: Workspa
     write(workspace, setup + "    node.destroy_node()\n")
     (report,) = run_all(workspace, TestRun(("test_half.py",), RIGHT))
     assert unclosed.passed
-    assert unclosed.left > 0
+    assert unclosed.open_sockets > 0
     assert clean.passed
-    assert (clean.left, clean.is_logging) == (0, False)
+    assert (clean.open_sockets, clean.is_logging) == (0, False)
     assert report.passed
-    assert (report.left, report.is_logging) == (0, True)
+    assert (report.open_sockets, report.is_logging) == (0, True)
 
 
 @pytest.mark.parametrize(
@@ -325,13 +325,13 @@ def test_only_tests_that_mention_launch_get_the_launch_plugin(workspace: Workspa
 
 def test_a_package_without_a_folder_of_its_name_is_named(workspace: Workspace) -> None:
     with pytest.raises(StudentError, match=r"There is no folder src/other with a package\.xml"):
-        take(workspace, "other")
+        read_source(workspace, "other")
 
 
 def test_a_link_that_the_build_left_among_the_tests_is_refused(workspace: Workspace) -> None:
     (workspace.root / "src/half/test/secrets").symlink_to("/etc")
     with pytest.raises(StudentError):
-        take(workspace, "half")
+        read_source(workspace, "half")
 
 
 def test_the_students_own_package_is_tested_as_it_was_built(workspace: Workspace) -> None:

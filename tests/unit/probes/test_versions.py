@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, style
+from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, bare, broken, faults, reworded, style
 from autograder.exceptions import GraderError
 from autograder.probes.leak_markers import markers_in
-from autograder.probes.versions import WHEN, Version, obfuscate, read, write_version
+from autograder.probes.versions import FILE_TIME, Version, obfuscate, read, write_version
 
 SOURCE = '''"""A secret comment."""
 
@@ -107,7 +107,7 @@ def test_a_version_is_installed_as_a_build_would_install_it(tmp_path: Path) -> N
     assert (install / "share/ament_index/resource_index/packages/p").is_file()
     assert (install / "lib/p/tool").stat().st_mode & 0o111
     assert len(list(install.glob("lib/python3*/site-packages/p/a.py"))) == 1
-    assert {path.stat().st_mtime for path in (tmp_path / "ws").rglob("*")} == {WHEN}
+    assert {path.stat().st_mtime for path in (tmp_path / "ws").rglob("*")} == {FILE_TIME}
 
 
 def test_a_packages_tests_and_caches_are_not_part_of_its_version(tmp_path: Path) -> None:
@@ -135,7 +135,7 @@ def test_every_fault_applies_to_both_styles(fault: Fault, name: str) -> None:
 
 
 def test_every_reworded_version_compiles_and_has_the_same_files() -> None:
-    reworded_files = [reworded(random.Random(seed)).files for seed in range(30)]
+    reworded_files = [reworded(random.Random(seed)).files for seed in range(30)] + [bare(random.Random(1)).files]
     plain = obfuscate(style(STYLES[0]), 1).files
     assert all(files.keys() == plain.keys() for files in reworded_files)
     for name in (name for name in plain if name.endswith(".py")):

@@ -91,7 +91,7 @@ def _use(event: str, record: Any) -> object:
     if isinstance(record, protocol.Description):
         counts = _sum([record.early, record.kept, record.early]) + _sum([record.kept])
         json.dumps({"kept": dict(counts), "reads": sorted(record.reads)})
-        grader: Any = SimpleNamespace(readers=[], written={}, publishers={}, clients=list)
+        grader: Any = SimpleNamespace(readers=[], publisher_channels={}, publishers={}, clients=list)
         return connected([record, record], grader), tick_of(10**8, record.timers)
     if isinstance(record, protocol.Reply):
         counts = _sum([*record.sent, *record.sent])
@@ -119,7 +119,7 @@ def _status_of_launch(data: bytes, folder: Path) -> object:
     os.set_blocking(ours, False)
     os.write(theirs, data)
     harness = LaunchHarness.__new__(LaunchHarness)
-    harness._pipe, harness._status_text = ours, b""
+    harness._status_pipe, harness._status_text = ours, b""
     try:
         return [harness.status for _ in range(2 + len(data))]
     finally:
@@ -253,9 +253,10 @@ READERS: dict[str, Reader] = {
     ),
     "traceback": Reader(_diagnose_crash, texts(TRACEBACK)),
     "traceback of a signal's race": Reader(lambda text, folder: rclpy_races.lost_a_race(text), texts(TRACEBACK)),
-    "frames of a traceback": Reader(lambda text, folder: tracebacks.own_frames(text), texts(TRACEBACK)),
+    "frames of a traceback": Reader(lambda text, folder: tracebacks.student_frames(text), texts(TRACEBACK)),
     "log of a build": Reader(
-        lambda text, folder: (build_log.readable(text), build_log.first_error(text)), texts(TRACEBACK, LAUNCH_OUTPUT)
+        lambda text, folder: (build_log.readable_log(text), build_log.first_error(text)),
+        texts(TRACEBACK, LAUNCH_OUTPUT),
     ),
     "imports of a module": Reader(
         _written("wheels/wheels/limits.py", lambda folder: imports.imported(folder / "wheels")),
@@ -265,7 +266,7 @@ READERS: dict[str, Reader] = {
     "metadata of an installed package": Reader(
         _written(
             "install/wheels/lib/python3.12/site-packages/wheels-1.0.egg-info/entry_points.txt",
-            lambda folder: installed.look(folder / "install", "wheels"),
+            lambda folder: installed.inspect_package(folder / "install", "wheels"),
         ),
         altered(METADATA),
         (b"[console_scripts]\na\n", b"a=b\n[console_scripts]\nc=d\n", b"[console_scripts]\na=b\n c=d\n[a\n"),

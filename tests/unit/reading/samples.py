@@ -131,5 +131,5 @@ OUTPUTS: tuple[dict[str, Any], ...] = (
             {"output_type": "display_data", "data": {"text/plain": "p", "application/json": [1]}, "metadata": {}},
         ],
     },
-    {"event": "end", "why": ""},
+    {"event": "end", "reason": ""},
 )

@@ -33,7 +33,7 @@ TRIED = {
 # Modules that parse only data of the grader or of a course's author, or that run in the sandbox.
 OWN = {
     *("building/interface_bundle.py", "checks/ch06_testing/hidden/faults.py", "suite/contract.py"),
-    *("grade/batch.py", "grade/job.py", "grade/notebook_runner.py", "building/keeper.py"),
+    *("grade/batch.py", "grade/job.py", "grade/notebook_runner.py", "building/bundle_server.py"),
     *("grade/store.py", "building/interfaces/generate.py", "building/interfaces/tutorials.py"),
     *("run/lockstep/lockstep_host/pipes.py", "probes/call_runner.py", "probes/versions.py"),
     "submission/reading.py",  # an example in its docstring

@@ -8,7 +8,7 @@ import pytest
 
 from autograder.diagnosis import Kind
 from autograder.exceptions import GraderError, StudentError, UsageError
-from autograder.submission.reading import hold, in_hand, put_down, reading
+from autograder.submission.reading import clear_recorded_data, reading, record_data, recorded_data
 from autograder.suite import CheckFailed
 
 
@@ -65,11 +65,11 @@ def test_the_reason_is_one_short_line_of_harmless_text() -> None:
 
 
 def test_data_stay_attributed_until_they_are_released() -> None:
-    put_down()
+    clear_recorded_data()
     with reading("a.yaml"):
         pass
-    hold("b.yaml")
-    hold("a.yaml")
-    assert in_hand() == ("b.yaml", "a.yaml")
-    put_down()
-    assert in_hand() == ()
+    record_data("b.yaml")
+    record_data("a.yaml")
+    assert recorded_data() == ("b.yaml", "a.yaml")
+    clear_recorded_data()
+    assert recorded_data() == ()

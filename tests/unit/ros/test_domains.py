@@ -19,12 +19,12 @@ LAB = "import os; print(os.environ['ROS_DOMAIN_ID'], flush=True); input()"
 TAKE_ALL = """\
 import sys
 from autograder.ros.domains import Domain
-from autograder.ros.exceptions import NoDomainLeftError
+from autograder.ros.exceptions import NoFreeDomainError
 domains = []
 try:
     while len(domains) < 200:
         domains.append(Domain())
-except NoDomainLeftError as exception:
+except NoFreeDomainError as exception:
     error = exception
 """
 KERNEL = (

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from autograder.ros import RosEnvironment, find
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.environment import without_wheel_bootstrap
 
 ROOT = Path(__file__).parents[3]
@@ -29,9 +30,10 @@ def test_the_wheels_of_this_virtual_environment_are_found() -> None:
     completed = run_python(
         "from autograder.ros import find; ros = find(); print(ros.kind, *ros.prefixes); print(ros.describe())"
     )
-    assert completed.stdout.splitlines() == [f"wheels {sys.prefix}", f"ROS 2 Jazzy, wheels in {sys.prefix}"], (
-        completed.stderr
-    )
+    assert completed.stdout.splitlines() == [
+        f"wheels {sys.prefix}",
+        f"ROS 2 {DISTRIBUTION.title}, wheels in {sys.prefix}",
+    ], completed.stderr
 
 
 def test_activating_is_enough_to_start_a_node() -> None:
@@ -56,7 +58,7 @@ activate()
 print(os.environ["ROS_LOG_DIR"], os.environ["FASTDDS_BUILTIN_TRANSPORTS"], os.environ["ROS_DISTRO"])
 """
     completed = run_python(code, ROS_LOG_DIR="/chosen", FASTDDS_BUILTIN_TRANSPORTS="LARGE_DATA")
-    assert completed.stdout.split() == ["/chosen", "LARGE_DATA", "jazzy"], completed.stderr
+    assert completed.stdout.split() == ["/chosen", "LARGE_DATA", DISTRIBUTION.name], completed.stderr
 
 
 @pytest.mark.promise(
@@ -95,10 +97,12 @@ def foreign_rclpy(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_sourced_jazzy_wins_over_the_wheels(foreign_rclpy: Path) -> None:
+def test_a_sourced_ros_wins_over_the_wheels(foreign_rclpy: Path) -> None:
     prefixes = os.pathsep.join(["/home/me/ws/install", str(foreign_rclpy), "/opt/more"])
-    completed = run_python(FIND, PYTHONPATH=str(foreign_rclpy), ROS_DISTRO="jazzy", AMENT_PREFIX_PATH=prefixes)
-    description = f"sourced ROS 2 Jazzy, sourced from {foreign_rclpy} {foreign_rclpy} /opt/more"
+    completed = run_python(
+        FIND, PYTHONPATH=str(foreign_rclpy), ROS_DISTRO=DISTRIBUTION.name, AMENT_PREFIX_PATH=prefixes
+    )
+    description = f"sourced ROS 2 {DISTRIBUTION.title}, sourced from {foreign_rclpy} {foreign_rclpy} /opt/more"
     assert completed.stdout.strip() == description, completed.stderr
 
 
@@ -107,11 +111,11 @@ def test_another_distribution_is_refused_by_name(foreign_rclpy: Path, distro: st
     completed = run_python(FIND, PYTHONPATH=str(foreign_rclpy), ROS_DISTRO=distro, AMENT_PREFIX_PATH="/opt/ros/other")
     assert completed.stdout.startswith("WrongDistroError the sourced ROS 2 "), completed.stderr
     assert named in completed.stdout
-    assert "source /opt/ros/jazzy/setup.bash" in completed.stdout
+    assert f"source {DISTRIBUTION.setup}" in completed.stdout
 
 
-def test_a_half_sourced_jazzy_is_reported_with_its_missing_parts(foreign_rclpy: Path) -> None:
-    completed = run_python(FIND, PYTHONPATH=str(foreign_rclpy), ROS_DISTRO="jazzy")
+def test_a_half_sourced_ros_is_reported_with_its_missing_parts(foreign_rclpy: Path) -> None:
+    completed = run_python(FIND, PYTHONPATH=str(foreign_rclpy), ROS_DISTRO=DISTRIBUTION.name)
     assert completed.stdout.startswith(
         f"RosNotFoundError rclpy is at {foreign_rclpy / 'rclpy'}, but not in AMENT_PREFIX_PATH"
     )
@@ -131,7 +135,7 @@ def test_child_processes_get_overlays_first_and_only_requested_variables() -> No
 
 
 def test_another_environment_gets_the_libraries_of_a_sourced_ros_but_not_those_of_the_wheels() -> None:
-    sourced = {"LD_LIBRARY_PATH": "/opt/ros/jazzy/lib", "HOME": "/home/me"}
+    sourced = {"LD_LIBRARY_PATH": "/opt/ros/sourced/lib", "HOME": "/home/me"}
     assert without_wheel_bootstrap(sourced) == sourced
     assert without_wheel_bootstrap({**sourced, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}) == {"HOME": "/home/me"}
 
@@ -166,7 +170,7 @@ def test_a_command_runs_with_ros_activated_and_its_exit_status_is_returned() -> 
 def test_without_a_command_the_variables_are_printed_for_a_shell() -> None:
     script = f'eval "$({sys.executable} -m autograder.ros)" && python -c "import os; print(os.environ[\'ROS_DISTRO\'])"'
     completed = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=120, cwd=ROOT)
-    assert completed.stdout.split() == ["jazzy"], completed.stderr
+    assert completed.stdout.split() == [DISTRIBUTION.name], completed.stderr
 
 
 def test_logs_go_to_stderr_in_a_terminal_and_to_stdout_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -187,4 +191,4 @@ def test_no_command_runs_without_a_usable_ros(foreign_rclpy: Path, monkeypatch: 
     monkeypatch.setenv("ROS_DISTRO", "rolling")
     completed = run_with_ros("echo", "ran")
     assert (completed.returncode, completed.stdout) == (1, "")
-    assert completed.stderr.startswith("ROS 2: the sourced ROS 2 is rolling, the course needs Jazzy")
+    assert completed.stderr.startswith(f"ROS 2: the sourced ROS 2 is rolling, the course needs {DISTRIBUTION.title}")

@@ -48,7 +48,7 @@ def prefix(tmp_path: Path) -> Path:
 
 def test_only_cmake_files_with_foreign_paths_are_rewritten_and_only_once(prefix: Path) -> None:
     folder = prefix / "share" / "std_msgs" / "cmake"
-    assert [path.name for path in patch_wheels.baked_files(prefix)] == ["baked.cmake"]
+    assert [path.name for path in patch_wheels.unpatched_cmake_files(prefix)] == ["baked.cmake"]
     assert patch_wheels.patch_wheels(prefix) == 1
     assert patch_wheels.patch_wheels(prefix) == 0
     text = (folder / "baked.cmake").read_text()
@@ -64,7 +64,7 @@ def test_a_prefix_without_wheels_is_not_changed(tmp_path: Path) -> None:
 
 
 def test_the_environment_of_the_tests_has_no_foreign_paths() -> None:
-    assert patch_wheels.baked_files(Path(sys.prefix)) == []
+    assert patch_wheels.unpatched_cmake_files(Path(sys.prefix)) == []
 
 
 @pytest.mark.promise(
@@ -124,10 +124,10 @@ def test_the_executor_of_this_environment_is_patched() -> None:
 
 @pytest.mark.promise("Set-up installs an empty replacement.")
 def test_cmake_packages_find_ament_lint_auto_where_the_wheels_are(tmp_path: Path) -> None:
-    assert not patch_wheels.offer_lint_auto(tmp_path)
+    assert not patch_wheels.add_lint_auto(tmp_path)
     (tmp_path / "share/ament_cmake").mkdir(parents=True)
-    assert patch_wheels.offer_lint_auto(tmp_path)
+    assert patch_wheels.add_lint_auto(tmp_path)
     assert "macro(ament_lint_auto_find_test_dependencies)" in (tmp_path / patch_wheels.LINT_AUTO).read_text()
     (tmp_path / patch_wheels.LINT_AUTO).write_text("the real one")
-    assert not patch_wheels.offer_lint_auto(tmp_path)
+    assert not patch_wheels.add_lint_auto(tmp_path)
     assert (tmp_path / patch_wheels.LINT_AUTO).read_text() == "the real one"

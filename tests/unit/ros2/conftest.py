@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from autograder.ros.ros2.main import STAND_INS
+from autograder.ros.ros2.main import STANDINS_FOLDER
 
-if str(STAND_INS) not in sys.path:
-    sys.path.append(str(STAND_INS))
+if str(STANDINS_FOLDER) not in sys.path:
+    sys.path.append(str(STANDINS_FOLDER))

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from autograder.ros.distribution import DISTRIBUTION
 from autograder.ros.ros2.exceptions import NotCoveredError
 from autograder.ros.ros2.main import COMMANDS
-from autograder.ros.ros2.main import stand_in as main
+from autograder.ros.ros2.main import run_stand_in as main
 from autograder.ros.ros2.parsing import Verb, parse, positive_float, positive_int, unsigned_int
 
 COVERED = {name: command for name, command in COMMANDS.items() if command.module}
@@ -49,7 +50,8 @@ def test_an_uncovered_command_is_named_with_the_installation_that_has_it(words: 
     assert isinstance(outcome, str)
     command_name = " ".join(words if words[0] in COVERED else words[:1]).split(" /")[0]
     assert outcome.startswith(f"`ros2 {command_name}` is not covered by this stand-in")
-    assert "works with the real ros2cli: install it with `make real-launch`, or source a ROS 2 Jazzy" in outcome
+    installation = f"install it with `make real-launch`, or source a ROS 2 {DISTRIBUTION.title}"
+    assert f"works with the real ros2cli: {installation}" in outcome
 
 
 @pytest.mark.parametrize("words", [("tpoic", "list"), ("topic", "lst"), ("topic", "echo"), ("topic", "pub", "-r", "0")])
@@ -111,8 +113,8 @@ def test_the_real_ros2cli_takes_over_if_it_is_installed(tmp_path: Path) -> None:
 
 def test_verbs_without_a_graph_do_not_import_rclpy() -> None:
     code = (
-        "import sys; from autograder.ros.ros2.main import stand_in; stand_in(['pkg', 'prefix', 'rclpy']); "
-        "stand_in(['interface', 'show', 'std_msgs/msg/String']); print('rclpy' in sys.modules)"
+        "import sys; from autograder.ros.ros2.main import run_stand_in; run_stand_in(['pkg', 'prefix', 'rclpy']); "
+        "run_stand_in(['interface', 'show', 'std_msgs/msg/String']); print('rclpy' in sys.modules)"
     )
     completed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert completed.stdout.endswith("\nFalse\n"), completed.stderr

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.ros.ros2.main import stand_in as main
+from autograder.ros.ros2.main import run_stand_in as main
 
 
 @pytest.fixture(autouse=True)

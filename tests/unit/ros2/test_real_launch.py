@@ -14,7 +14,7 @@ import pytest
 
 from autograder.course_paths import ROOT
 from autograder.ros import RosEnvironment, find, real_launch
-from autograder.ros.launch_packages import SOURCES, Place, Source, describe_launch, python_packages
+from autograder.ros.launch_packages import SOURCES, Location, Source, describe_launch, python_packages
 from autograder.ros.real_launch import RealLaunchError, install, main, remove, set_up
 
 MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>Test</description>
@@ -93,7 +93,7 @@ def test_packages_are_installed_from_the_sources_that_the_variables_name(
     launch = repository(tmp_path / "launch", python_package("made_launch", "VERSION = 'tagged'"), tag="1.0.0")
     (launch / "made_launch" / "made_launch" / "__init__.py").write_text("VERSION = 'not committed'")
     sources = (
-        Source("INTERFACES", NO_GIT, "1.0.0", commit_of(interfaces_clone), ("made_interfaces",), built=True),
+        Source("INTERFACES", NO_GIT, "1.0.0", commit_of(interfaces_clone), ("made_interfaces",), is_interface=True),
         Source("LAUNCH", NO_GIT, "1.0.0", commit_of(launch), ("made_launch",)),
     )
     environ = {"INTERFACES": str(interfaces_clone), "LAUNCH": str(launch)}
@@ -192,24 +192,26 @@ def test_a_repository_without_the_package_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_sourced_installation_is_not_changed() -> None:
-    sourced = RosEnvironment("sourced", (Path("/opt/ros/jazzy"),), Path("/opt/ros/jazzy/rclpy"))
-    with pytest.raises(RealLaunchError, match="sourced from /opt/ros/jazzy: it has the real launch and ros2 already"):
+    sourced = RosEnvironment("sourced", (Path("/opt/ros/sourced"),), Path("/opt/ros/sourced/rclpy"))
+    with pytest.raises(RealLaunchError, match="sourced from /opt/ros/sourced: it has the real launch and ros2 already"):
         install(sourced, {})
 
 
 @pytest.mark.parametrize(
     ("setting", "expected"),
     [
-        (None, Place("https://example.com/x.git", "1.0", "c0de")),
-        ("/clones/x", Place("/clones/x", "1.0", "c0de")),
-        ("/clones/x@2.0", Place("/clones/x", "2.0", "")),
-        ("git@example.com:team/x.git", Place("git@example.com:team/x.git", "1.0", "c0de")),
-        ("git@example.com:team/x.git@2.0", Place("git@example.com:team/x.git", "2.0", "")),
+        (None, Location("https://example.com/x.git", "1.0", "c0de")),
+        ("/clones/x", Location("/clones/x", "1.0", "c0de")),
+        ("/clones/x@2.0", Location("/clones/x", "2.0", "")),
+        ("git@example.com:team/x.git", Location("git@example.com:team/x.git", "1.0", "c0de")),
+        ("git@example.com:team/x.git@2.0", Location("git@example.com:team/x.git", "2.0", "")),
     ],
 )
-def test_a_source_is_an_address_with_an_optional_tag_that_is_not_pinned(setting: str | None, expected: Place) -> None:
+def test_a_source_is_an_address_with_an_optional_tag_that_is_not_pinned(
+    setting: str | None, expected: Location
+) -> None:
     source = Source("X_SOURCE", "https://example.com/x.git", "1.0", "c0de", ("x",))
-    assert source.place({"X_SOURCE": setting} if setting else {}) == expected
+    assert source.location({"X_SOURCE": setting} if setting else {}) == expected
 
 
 def test_every_default_source_is_pinned_to_a_commit() -> None:

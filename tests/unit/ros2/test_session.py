@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import pytest
 
-from autograder.ros.ros2.session import Session, signals_held_back
+from autograder.ros.ros2.session import Session, deferred_signals
 
 
 class InterruptedExecutor:
@@ -34,7 +34,7 @@ def test_an_interrupted_turn_of_the_executor_is_completed() -> None:
 def test_an_interrupt_reaches_the_outer_block_that_defers_signals() -> None:
     executor = InterruptedExecutor()
     session = Session(cast("Any", None), cast("Any", executor), None)
-    with signals_held_back() as received:
+    with deferred_signals() as received:
         assert session.wait_for(lambda: bool(received), 5.0)
     assert received == [signal.SIGINT]
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from autograder.ros.ros2.exceptions import Ros2Error
-from autograder.ros.ros2.filling import filled
 from autograder.ros.ros2.graph import NodeName, has_hidden_part, warn_of_duplicates
-from autograder.ros.ros2.interface_text import nested_type, unfold
+from autograder.ros.ros2.interface_text import expand_lines, nested_type
 from autograder.ros.ros2.launch import find_launch_file, launch_arguments
+from autograder.ros.ros2.message_values import make_message
 from autograder.ros.ros2.param_client import nested, parameters_in_file
 from autograder.ros.ros2.pkg_create import files
 from autograder.ros.ros2.pkg_templates import PackageSpec, licence_text, setup_py
@@ -29,7 +29,7 @@ INTERFACES = {
 
 
 def test_nested_interfaces_unfold_below_their_field() -> None:
-    assert list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__)) == [
+    assert list(expand_lines("a_msgs/msg/Outer", INTERFACES.__getitem__)) == [
         "# About it.",
         "",
         "Inner inner  # one",
@@ -43,10 +43,10 @@ def test_nested_interfaces_unfold_below_their_field() -> None:
 
 
 def test_comments_can_be_kept_everywhere_or_nowhere() -> None:
-    with_all_comments = list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__, nested_comments=True))
+    with_all_comments = list(expand_lines("a_msgs/msg/Outer", INTERFACES.__getitem__, nested_comments=True))
     assert "\t# Hidden." in with_all_comments
     assert "\tfloat64 x # metres" in with_all_comments
-    without_comments = list(unfold("a_msgs/msg/Outer", INTERFACES.__getitem__, comments=False))
+    without_comments = list(expand_lines("a_msgs/msg/Outer", INTERFACES.__getitem__, comments=False))
     assert without_comments[0] == "Inner inner"
     assert "string<=5 name 'a # b'" in without_comments
 
@@ -77,7 +77,7 @@ def test_a_node_has_one_full_name_however_it_is_typed(text: str, name: str) -> N
 
 
 def test_hidden_names_begin_with_an_underscore() -> None:
-    assert NodeName.parse("/_ros2cli_1").hidden
+    assert NodeName.parse("/_ros2cli_1").is_hidden
     assert [has_hidden_part(name) for name in ("/a/_action/status", "/a_b", "/_x")] == [True, False, True]
 
 
@@ -117,7 +117,7 @@ def test_a_filter_is_a_python_expression_over_m() -> None:
 
 def test_a_goal_refuses_automatic_stamps() -> None:
     with pytest.raises(Ros2Error, match="Failed to populate request: Value 'now'"):
-        filled(Twist, "{linear: now}", "request", stamps=False)
+        make_message(Twist, "{linear: now}", "request", allow_stamps=False)
 
 
 PARAMETERS = """

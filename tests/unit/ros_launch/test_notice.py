@@ -10,6 +10,8 @@ import pytest
 from standin_notice import NotInStandInError, not_covered
 from standin_submodules import NOT_COVERED
 
+from autograder.ros.distribution import DISTRIBUTION
+
 PACKAGES = ("launch", "launch_ros", "launch_testing", "launch_pytest")
 ADVICE = "run `make real-launch` (needs GitHub), or use a shell in which an installation of ROS 2 is sourced"
 
@@ -20,7 +22,7 @@ def test_a_stand_in_says_that_it_is_one_and_how_to_get_the_real_package(name: st
     text = " ".join((importlib.import_module(name).__doc__ or "").split())
     assert text.startswith(f"Stand-in for `{name}`")
     assert "make real-launch" in text
-    assert "ROS 2 Jazzy" in text
+    assert f"ROS 2 {DISTRIBUTION.title}" in text
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,7 @@ def test_version_1_offers_the_process_s_group_of_the_pids_controller_and_those_a
     )
     memberships = "9:name=systemd:/\n8:pids:/user/session\n4:memory:/other\n0::/\n"
     pids = tmp_path / "pids"
-    assert cgroup.homes("pids", mountinfo, memberships) == [pids / "user" / "session", pids / "user", pids]
+    assert cgroup.parent_folders("pids", mountinfo, memberships) == [pids / "user" / "session", pids / "user", pids]
 
 
 def test_version_2_offers_the_groups_that_delegate_the_pids_controller(tmp_path: Path) -> None:
@@ -39,16 +39,19 @@ def test_version_2_offers_the_groups_that_delegate_the_pids_controller(tmp_path:
     (tmp_path / "user.slice" / "cgroup.subtree_control").write_text("memory pids\n")
     (tmp_path / "user.slice" / "session.scope" / "cgroup.subtree_control").write_text("\n")
     mountinfo = f"31 23 0:28 / {tmp_path} rw,nosuid - cgroup2 cgroup2 rw,nsdelegate\n"
-    assert cgroup.homes("pids", mountinfo, "0::/user.slice/session.scope\n") == [tmp_path / "user.slice", tmp_path]
+    assert cgroup.parent_folders("pids", mountinfo, "0::/user.slice/session.scope\n") == [
+        tmp_path / "user.slice",
+        tmp_path,
+    ]
 
 
 def test_without_control_groups_no_folder_is_offered() -> None:
-    assert cgroup.homes("pids", "23 1 0:21 / /proc rw - proc proc rw\n", "") == []
+    assert cgroup.parent_folders("pids", "23 1 0:21 / /proc rw - proc proc rw\n", "") == []
 
 
 @pytest.fixture(autouse=True)
-def _uncached_home(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cgroup, "_home", cgroup._home.__wrapped__)
+def _uncached_parent_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cgroup, "_parent_folder", cgroup._parent_folder.__wrapped__)
 
 
 @pytest.mark.parametrize(("user", "bounds"), [(0, set()), (1000, {"pids"})])
@@ -56,17 +59,17 @@ def test_without_a_control_group_prlimit_bounds_all_users_but_root(
     monkeypatch: pytest.MonkeyPatch, user: int, bounds: set[str]
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: user)
-    monkeypatch.setattr(cgroup, "homes", lambda controller, mountinfo, own: [Path("/proc/nowhere")])
+    monkeypatch.setattr(cgroup, "parent_folders", lambda controller, mountinfo, memberships: [Path("/proc/nowhere")])
     group = cgroup.make(Limits())
     assert group.folders == ()
     assert group.enter(["true"]) == ["true"]
-    assert not group.ran_out()
+    assert not group.is_out_of_memory()
     assert cgroup.bounds() == bounds
 
 
 def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """No controller acts on this folder. The test only asserts which texts are written to its files."""
-    monkeypatch.setattr(cgroup, "_home", lambda controller: tmp_path)
+    monkeypatch.setattr(cgroup, "_parent_folder", lambda controller: tmp_path)
     folder = tmp_path / f"autograder-{cgroup._PROCESS}-7"
     folder.mkdir()
     for name in ("pids.max", "memory.max", "memory.swap.max", "memory.oom.group"):
@@ -78,16 +81,16 @@ def test_a_group_of_version_2_is_one_folder_with_both_bounds(tmp_path: Path, mon
     expected = {"pids.max": "40", "memory.max": str(256 * MIB), "memory.swap.max": "0", "memory.oom.group": "1"}
     assert texts == expected
     (folder / "memory.events").write_text("low 0\noom 1\noom_kill 0\n")
-    assert not group.ran_out()
+    assert not group.is_out_of_memory()
     (folder / "memory.events").write_text("low 0\noom 1\noom_kill 1\n")
-    assert group.ran_out()
+    assert group.is_out_of_memory()
 
 
 def test_a_worker_sandbox_with_version_2_has_a_group_beside_those_of_its_inner_sandboxes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The kernel forbids a group with both processes and subgroups. This folder only imitates a control group."""
-    monkeypatch.setattr(cgroup, "_home", lambda controller: tmp_path)
+    monkeypatch.setattr(cgroup, "_parent_folder", lambda controller: tmp_path)
     monkeypatch.setattr(cgroup, "_NUMBERS", iter([7]))
     folder = tmp_path / f"autograder-{cgroup._PROCESS}-7"
     _hierarchy(folder, "worker")
@@ -147,6 +150,6 @@ def test_a_control_group_left_by_a_killed_grader_is_removed(monkeypatch: pytest.
 def test_a_group_does_not_count_memory_events_of_its_subgroups(tmp_path: Path) -> None:
     group = cgroup.ControlGroup({"memory": tmp_path})
     (tmp_path / "memory.events").write_text("oom 1\noom_kill 1\n")
-    assert group.ran_out()
+    assert group.is_out_of_memory()
     (tmp_path / "memory.events.local").write_text("oom 0\noom_kill 0\n")
-    assert not group.ran_out()
+    assert not group.is_out_of_memory()

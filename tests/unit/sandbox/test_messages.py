@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from autograder.building import keeper
+from autograder.building import bundle_server
 from autograder.run.sandbox.limits import SOURCES
 from autograder.run.sandbox.messages import MessageError, receive_tree, send_tree, write_received
-from autograder.run.sandbox.trees import Entry, TreeError, read_tree, survey
+from autograder.run.sandbox.trees import Entry, TreeError, list_tree, read_tree
 
 FOLDER = Entry("p", "folder")
 
@@ -35,7 +35,7 @@ def test_a_file_has_the_size_that_the_list_says() -> None:
 def test_different_trees_have_different_keys() -> None:
     first, second = Entry("a.msg", "file", False, 1), Entry("b.msg", "file", False, 2)
     joined = b"x" + json.dumps(astuple(second)).encode() + b"yz"
-    assert keeper.key({first: b"x", second: b"yz"}) != keeper.key({first: joined})
+    assert bundle_server.key({first: b"x", second: b"yz"}) != bundle_server.key({first: joined})
 
 
 @pytest.mark.parametrize(
@@ -91,4 +91,4 @@ def test_the_paths_of_a_tree_are_bounded_before_they_are_sent(tmp_path: Path) ->
     folder = tmp_path / "/".join("n" * 200 for _ in range(6))
     folder.mkdir(parents=True)
     with pytest.raises(TreeError, match="more than 1024 bytes"):
-        survey(tmp_path, SOURCES)
+        list_tree(tmp_path, SOURCES)

@@ -193,7 +193,7 @@ signal.pause()
 
 def test_measuring_stops_at_far_too_many_processes() -> None:
     assert len(measure(os.getpid()).pids) >= 1
-    assert len(measure(1, most=0).pids) <= 1
+    assert len(measure(1, max_threads=0).pids) <= 1
 
 
 def test_measuring_an_ended_process_gives_no_process() -> None:
@@ -221,6 +221,6 @@ def test_many_processes_at_once_are_each_watched() -> None:
 def test_a_worker_sandbox_survives_a_bomb_that_is_stopped_in_it(seconds: float, exit_reason: ExitReason) -> None:
     code = "import threading, time\nwait = threading.Event()\nfor _ in range(30):\n    "
     code += f"threading.Thread(target=wait.wait).start()\ntime.sleep({seconds})\nwait.set()"
-    with Process(_python(code), Limits(threads=10, looks=8)) as process:
+    with Process(_python(code), Limits(threads=10, excess_measurements=8)) as process:
         assert process.wait(LONG)
         assert process.exit_reason is exit_reason

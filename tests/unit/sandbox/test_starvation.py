@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from autograder.run.sandbox.procfs import TICK, CpuTime, ThreadTime
-from autograder.run.sandbox.starvation import Use, look, starved, used
+from autograder.run.sandbox.starvation import CpuUse, measure_use, starved_seconds, used_seconds
 
 MAIN, CHILD = 11, 12  # process ids, and MAIN's thread
 
@@ -21,28 +21,28 @@ MAIN, CHILD = 11, 12  # process ids, and MAIN's thread
 def test_time_that_the_submission_s_other_processes_used_is_subtracted_from_a_wait(
     child: float, expected: float
 ) -> None:
-    before = Use({MAIN: ThreadTime(1.0, 2.0)}, {MAIN: CpuTime(1.0), CHILD: CpuTime(3.0)})
-    after = Use({MAIN: ThreadTime(1.3, 2.6)}, {MAIN: CpuTime(1.3), CHILD: CpuTime(3.0 + child)})
-    assert max(0.0, starved(before, after)) == pytest.approx(expected)
+    before = CpuUse({MAIN: ThreadTime(1.0, 2.0)}, {MAIN: CpuTime(1.0), CHILD: CpuTime(3.0)})
+    after = CpuUse({MAIN: ThreadTime(1.3, 2.6)}, {MAIN: CpuTime(1.3), CHILD: CpuTime(3.0 + child)})
+    assert max(0.0, starved_seconds(before, after)) == pytest.approx(expected)
 
 
 def test_children_that_have_ended_are_counted_once() -> None:
-    before = Use({}, {MAIN: CpuTime(1.0, 5.0), CHILD: CpuTime(3.0)})
-    assert used(before, Use({}, {MAIN: CpuTime(1.0, 8.5)})) == pytest.approx(0.5)
+    before = CpuUse({}, {MAIN: CpuTime(1.0, 5.0), CHILD: CpuTime(3.0)})
+    assert used_seconds(before, CpuUse({}, {MAIN: CpuTime(1.0, 8.5)})) == pytest.approx(0.5)
 
 
 def test_an_unreaped_process_does_not_reduce_the_time_of_the_others() -> None:
-    before = Use({}, {MAIN: CpuTime(1.0), CHILD: CpuTime(3.0)})
-    assert used(before, Use({}, {MAIN: CpuTime(1.4)})) == pytest.approx(0.4)
+    before = CpuUse({}, {MAIN: CpuTime(1.0), CHILD: CpuTime(3.0)})
+    assert used_seconds(before, CpuUse({}, {MAIN: CpuTime(1.4)})) == pytest.approx(0.4)
 
 
 def test_the_time_of_a_started_process_and_of_its_children_is_found_after_their_end() -> None:
     busy = "import time\nwhile time.process_time() < 0.2: pass"
     parent = f"import subprocess, sys\nsubprocess.run([sys.executable, '-c', {busy!r}])"
-    before = look(())
+    before = measure_use(())
     subprocess.run([sys.executable, "-c", parent], check=True)
-    assert used(before, look(())) > 0.2 - 2 * TICK
+    assert used_seconds(before, measure_use(())) > 0.2 - 2 * TICK
 
 
 def test_without_processes_nothing_is_starved() -> None:
-    assert starved(Use({}, {}), Use({}, {})) == 0.0
+    assert starved_seconds(CpuUse({}, {}), CpuUse({}, {})) == 0.0

@@ -9,7 +9,7 @@ from zoneinfo import ZoneInfo
 import pytest
 
 from autograder.exceptions import UsageError
-from autograder.lms.serve.settings import AssignmentSettings, Settings, Shown, read_settings
+from autograder.lms.serve.settings import AssignmentSettings, Settings, ShownParts, read_settings
 
 WHOLE = """
 instructors: [grace, alan]
@@ -42,7 +42,7 @@ def test_every_setting_is_read(tmp_path: Path) -> None:
     assert settings.zone == BERLIN
     assert settings.exchange == Path("/srv/exchange/ros2-python/inbound")
     assert settings.assignments == {
-        "02_nodes": AssignmentSettings(DUE, 3, Shown.POINTS, best_counts=True, extensions={"ada": later}),
+        "02_nodes": AssignmentSettings(DUE, 3, ShownParts.POINTS, best_counts=True, extensions={"ada": later}),
         "01_package_structure": AssignmentSettings(),
     }
 
@@ -113,8 +113,11 @@ def test_a_missing_settings_file_is_named(tmp_path: Path) -> None:
 
 def test_the_shown_feedback_changes_at_each_students_due_time(tmp_path: Path) -> None:
     assignment = read(tmp_path, WHOLE).assignments["02_nodes"]
-    assert [assignment.shown_to("bob", DUE + after) for after in (-MINUTE, MINUTE)] == [Shown.POINTS, Shown.EVERYTHING]
-    assert assignment.shown_to("ada", DUE + MINUTE) is Shown.POINTS
+    assert [assignment.shown_to("bob", DUE + after) for after in (-MINUTE, MINUTE)] == [
+        ShownParts.POINTS,
+        ShownParts.EVERYTHING,
+    ]
+    assert assignment.shown_to("ada", DUE + MINUTE) is ShownParts.POINTS
     assert [assignment.is_open("bob", DUE + after) for after in (-MINUTE, 0 * MINUTE, MINUTE)] == [True, True, False]
     assert assignment.is_open("ada", DUE + MINUTE)
     assert AssignmentSettings().is_open("bob", DUE + MINUTE)

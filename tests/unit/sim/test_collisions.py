@@ -50,7 +50,7 @@ def test_a_robot_stops_at_a_wall_and_the_contact_is_recorded_once(engine: str, f
     assert event.x == pytest.approx(2.0)
     assert event.time_ns == pytest.approx(3.9e9, abs=0.3e9)
     nearest = clearance(subject, states[-1])
-    assert nearest.what == "east wall"
+    assert nearest.name == "east wall"
     assert 0.0 < nearest.distance < 1e-5
 
 
@@ -148,7 +148,7 @@ def test_a_mover_that_runs_into_a_robot_is_a_collision_and_the_robot_can_drive_a
     states = drive(subject, Command(), 2.0)
     assert [event.what for state in states for event in state.events] == ["robot met cart at 0.00 m/s"]
     assert clearance(subject, states[-1]).distance < 0.0
-    assert clearance(subject, states[-1]).what == "cart"
+    assert clearance(subject, states[-1]).name == "cart"
     collided = next(state for state in states if state.robots[0].collided)
     state_after = step(subject, collided, Command(-0.5, 0.0), 1.0)
     assert state_after.robots[0].pose.x < -0.2
@@ -172,10 +172,10 @@ def test_clearance_names_the_nearest_thing_and_where_it_is() -> None:
     ):
         subject = simulation_at(pose, world)
         nearest = clearance(subject, start(subject))
-        assert (nearest.what, nearest.distance) == (name, pytest.approx(distance))
+        assert (nearest.name, nearest.distance) == (name, pytest.approx(distance))
         assert (nearest.x, nearest.y) == pytest.approx(point)
     unnamed = simulation_at(Pose(0.0, 1.0), World.from_segments(box(4.0, 3.0)))
-    assert clearance(unnamed, start(unnamed)).what == "wall 2"
+    assert clearance(unnamed, start(unnamed)).name == "wall 2"
 
 
 @pytest.mark.slow

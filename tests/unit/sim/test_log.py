@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sim import Command, Simulation, World, box, load_recording, run
-from sim.log import LEFT_OUT, MAX_CHARACTERS, MAX_LINES, Log
+from sim.log import MAX_CHARACTERS, MAX_LINES, OMISSION, Log
 
 RUN = run(Simulation(World.from_segments(box(4.0, 3.0))), lambda state, scans: Command(linear=0.2), seconds=0.5)
 
@@ -24,7 +24,7 @@ def test_the_first_and_the_last_lines_of_a_flood_are_kept() -> None:
         log.add(number / 1000, f"{number} {'x' * 1000}")
     lines = log.lines()
     assert len(lines) == 2 * MAX_LINES + 1
-    assert lines[MAX_LINES][1] == LEFT_OUT
+    assert lines[MAX_LINES][1] == OMISSION
     assert (lines[MAX_LINES - 1][0], lines[-1][0]) == (0.999, 49.999)
     assert max(len(text) for _, text in lines) == MAX_CHARACTERS
 
@@ -37,7 +37,7 @@ def test_a_log_of_at_most_the_kept_number_of_lines_is_complete() -> None:
 
 
 def test_a_saved_run_keeps_its_lines_and_its_hash_does_not_depend_on_them(tmp_path: Path) -> None:
-    talking = replace(RUN, said=((0.2, "<b>näher</b>"),))
+    talking = replace(RUN, log_lines=((0.2, "<b>näher</b>"),))
     talking.save(tmp_path / "run.npz")
-    assert load_recording(tmp_path / "run.npz").said == talking.said
+    assert load_recording(tmp_path / "run.npz").log_lines == talking.log_lines
     assert talking.sha256() == RUN.sha256()

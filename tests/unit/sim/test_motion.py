@@ -196,7 +196,7 @@ def test_a_mover_with_one_point_does_not_move() -> None:
 def test_an_empty_world_has_no_nearest_obstacle() -> None:
     simulation = Simulation(NOWHERE)
     nearest = clearance(simulation, start(simulation))
-    assert (nearest.distance, nearest.what) == (math.inf, "nothing")
+    assert (nearest.distance, nearest.name) == (math.inf, "nothing")
 
 
 @pytest.mark.parametrize(

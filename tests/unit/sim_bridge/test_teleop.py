@@ -17,7 +17,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from sim.bridge.teleop import changed
+from sim.bridge.teleop import command_after
 
 ROOT = Path(__file__).resolve().parents[3]
 PATIENCE = 60.0
@@ -26,9 +26,9 @@ PATIENCE = 60.0
 def test_keys_change_the_command() -> None:
     command = (0.0, 0.0)
     for key in ("w", "\x1b[A", "W", "s", "a", "a", "\x1b[C", "?", ""):
-        command = changed(*command, key, 0.05, 0.2)
+        command = command_after(*command, key, 0.05, 0.2)
     assert command == (0.1, 0.2)
-    assert changed(*command, " ", 0.05, 0.2) == (0.0, 0.0)
+    assert command_after(*command, " ", 0.05, 0.2) == (0.0, 0.0)
 
 
 @pytest.mark.slow

@@ -18,6 +18,7 @@ from PIL import Image
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
+from autograder.ros.distribution import DISTRIBUTION
 from sim import Recording, SimError, World, run
 from sim.export import ExportError, export, to_gif, to_html, to_mcap, to_mp4
 from sim.simulation import Simulation
@@ -106,7 +107,7 @@ def test_a_name_cannot_break_out_of_the_page(tmp_path: Path) -> None:
 def test_a_bag_contains_every_message_in_order_of_time(recording: Recording, tmp_path: Path) -> None:
     folder = to_mcap(recording, tmp_path / "run.mcap")
     assert folder == tmp_path / "run"
-    store = get_typestore(Stores.ROS2_JAZZY)
+    store = get_typestore(Stores[f"ROS2_{DISTRIBUTION.name.upper()}"])
     with AnyReader([folder], default_typestore=store) as reader:
         counts = {connection.topic: connection.msgcount for connection in reader.connections}
         messages = [

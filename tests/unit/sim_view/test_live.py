@@ -18,7 +18,7 @@ from PIL import Image
 from sim import Command, Recording, RobotSpec, Scan, Simulation, World, box, load_world
 from sim.view import LiveView, Picture, Player, live, plot
 from sim.view.renderer import Renderer
-from sim.view.session import LONGEST_NS, Session
+from sim.view.session import MAX_NS, Session
 from sim.view.theme import DARK, LIGHT
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -223,8 +223,8 @@ def test_a_recording_does_not_accept_a_callback(recording: Recording) -> None:
 
 def test_a_session_stops_growing_at_its_longest_time() -> None:
     session = Session(Simulation(World(), tick=1.0))
-    session.advance(LONGEST_NS + 5 * SECOND)
-    assert session.end_ns == LONGEST_NS
+    session.advance(MAX_NS + 5 * SECOND)
+    assert session.end_ns == MAX_NS
     assert not session.growing
 
 

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import pytest
 
 from sim import Command, Recording, RobotSpec, Simulation, World, load_world, run
-from sim.log import LEFT_OUT
+from sim.log import OMISSION
 from sim.view import Margin, encode
 from sim.view.run_data import MAX_BYTES, MAX_LOG_BYTES, NO_RETURN, pack
 
@@ -106,7 +106,7 @@ def decoded_output(text: str) -> list[tuple[float, str]]:
 
 def test_output_of_programs_is_decoded_with_its_times(recording: Recording) -> None:
     markup = "</script><script>alert(1)</script>"
-    text = encode(replace(recording, said=((0.1, "near"), (1.5, markup))), "")
+    text = encode(replace(recording, log_lines=((0.1, "near"), (1.5, markup))), "")
     assert decoded_output(text) == [(pytest.approx(0.1), "near"), (pytest.approx(1.5), markup)]
     assert "<" not in text
     assert json.loads(encode(recording, ""))["said"] is None
@@ -115,8 +115,8 @@ def test_output_of_programs_is_decoded_with_its_times(recording: Recording) -> N
 def test_a_flood_of_lines_that_cannot_be_compressed_is_bounded(recording: Recording) -> None:
     draw = random.Random(1)
     flood = tuple((0.001 * n, "".join(chr(draw.randrange(0x4E00, 0x9FFF)) for _ in range(300))) for n in range(2001))
-    text = encode(replace(recording, said=flood), "")
+    text = encode(replace(recording, log_lines=flood), "")
     assert len(json.loads(text)["said"]["texts"]) <= MAX_LOG_BYTES
     assert len(text) <= MAX_BYTES
     assert (decoded_output(text)[0][1], decoded_output(text)[-1][1]) == (flood[0][1], flood[-1][1])
-    assert [line for _, line in decoded_output(text)].count(LEFT_OUT) == 1
+    assert [line for _, line in decoded_output(text)].count(OMISSION) == 1

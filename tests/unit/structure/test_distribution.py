@@ -26,6 +26,10 @@ CODE = [path for path in CODE if ROOT / "autograder" / "checks" not in path.pare
 RECIPES = [ROOT / "Makefile", ROOT / "assets" / "students" / "Makefile", ROOT / ".ci" / "run"]
 IMAGES = [".binder/Dockerfile", "docs/cluster/Dockerfile"]
 IMAGES += [str(path.relative_to(ROOT)) for path in sorted((ROOT / ".github").rglob("*.yml"))]
+FOLDERS = {".binder", ".ci", ".devcontainer", ".github"}
+FOLDERS |= {"assets", "autograder", "chapters", "docs", "sim", "solutions", "tests"}
+GUIDE = (ROOT / "docs" / "distribution.md").read_text(encoding="utf-8")
+NOT_CHANGED = {"CHANGELOG.md", "docs/distribution.md"}  # they describe this distribution and earlier releases
 CODENAME = DISTRIBUTION.platform_page.rpartition("/")[2]
 FACT = re.compile(rf"{DISTRIBUTION.name}|{re.escape(DISTRIBUTION.platform)}|\b{CODENAME}\b|python3\.\d", re.IGNORECASE)
 VERSIONS = {
@@ -67,6 +71,29 @@ def test_no_recipe_states_a_fact_of_the_distribution() -> None:
     for path in RECIPES:
         lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
         assert [line for line in lines if FACT.search(line)] == [], path
+
+
+def test_the_guide_to_a_port_names_each_file_that_mentions_the_distribution() -> None:
+    rows = re.findall(r"^\| (`.+?) \|", GUIDE, re.MULTILINE)
+    patterns = [name.rstrip("/") for row in rows for name in re.findall(r"`([^`]+)`", row)]
+    assert [name for name in patterns if not list(ROOT.glob(name))] == []
+    listed = {path for name in patterns for path in ROOT.glob(name)}
+    unlisted = [path for path in _project_files() if not listed & {path, *path.parents}]
+    assert 200 < len(unlisted) < len(list(_project_files())) - 200
+    missing = {path.relative_to(ROOT).as_posix() for path in unlisted if _mentions_the_distribution(path)}
+    assert missing - NOT_CHANGED == set(), "add these files to the table in docs/distribution.md"
+
+
+def _project_files() -> Iterator[Path]:
+    """Yield the files of the project, apart from those that tools create."""
+    folders = [path for path in ROOT.iterdir() if path.is_dir() and path.name in FOLDERS]
+    for path in (*ROOT.iterdir(), *(path for folder in folders for path in folder.rglob("*"))):
+        if path.is_file() and "__pycache__" not in path.parts:
+            yield path
+
+
+def _mentions_the_distribution(path: Path) -> bool:
+    return DISTRIBUTION.name in path.read_text(encoding="utf-8", errors="ignore").lower()
 
 
 def test_the_project_asks_for_the_wheels_and_the_pythons_of_the_distribution() -> None:

@@ -106,10 +106,5 @@ def test_a_sheet_that_cannot_be_read_is_explained(text: str | None, message: str
     assert excinfo.value.message.startswith(message)
 
 
-def test_a_fan_with_two_thresholds_keeps_its_state_between_them() -> None:
-    temperatures = [55.0, 60.0, 55.0, 50.0, 55.0, float("nan"), 55.0]
-    assert contract.decisions(temperatures) == [False, True, True, False, False, True, True]
-
-
 def test_a_fan_averages_the_temperatures_that_it_has() -> None:
     assert contract.averages([1.0, 2.0, 6.0], window=2) == [1.0, 1.5, 4.0]

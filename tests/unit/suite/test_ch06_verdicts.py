@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, REWORDED, SECOND, Examination
+from autograder.checks.ch06_testing.hidden.examination import BACKWARDS, BARE, REWORDED, SECOND, Examination
 from autograder.checks.ch06_testing.hidden.faults import faults
 from autograder.checks.ch06_testing.support.assertions import (
     describe_failure,
@@ -122,7 +122,7 @@ def examination(tmp_path: Path) -> Examination:
     prepared = Examination(Workspace(tmp_path, environment.find(), tmp_path), 1, frozenset())
     prepared.__dict__["trial"] = {LIMITS: ENOUGH}
     prepared.__dict__["runs"] = {(LIMITS, fault.id): report(BAD) for fault in faults()} | {
-        (LIMITS, name): ENOUGH for name in (SECOND, REWORDED, BACKWARDS)
+        (LIMITS, name): ENOUGH for name in (SECOND, REWORDED, BARE, BACKWARDS)
     }
     return prepared
 
@@ -130,7 +130,7 @@ def examination(tmp_path: Path) -> Examination:
 def test_tests_that_fail_on_all_faults_of_a_line_earn_its_points(examination: Examination) -> None:
     examination.expect_objection("unknown", "the promise.")
     examination.expect_right(LIMITS)
-    assert examination.endless() == []
+    assert examination.endless_files() == []
 
 
 def test_tests_that_fail_on_some_faults_of_a_line_earn_a_part_and_the_line_is_named(examination: Examination) -> None:
@@ -152,7 +152,7 @@ def test_a_test_that_also_fails_on_right_versions_earns_nothing(examination: Exa
 def test_a_stopped_run_counts_as_failed_and_as_endless(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, "nan_is_clear"] = report(exit_reason=ExitReason.WALL_TIME)
     examination.expect_objection("unknown", "the promise.")
-    assert examination.endless() == [LIMITS]
+    assert examination.endless_files() == [LIMITS]
 
 
 def test_tests_that_fail_in_reverse_order_are_reported(examination: Examination) -> None:

@@ -48,10 +48,10 @@ def test_only_the_runs_that_a_check_needs_are_executed(
 ) -> None:
     examination = Examination(workspace, 1, frozenset(checks))
     assert set(examination.runs) == {
-        (LIMITS, purpose) for purpose in ("second", "reworded", "backwards", "step", "smooth")
+        (LIMITS, purpose) for purpose in ("second", "reworded", "bare", "backwards", "step", "smooth")
     }
     assert {order.files for order in ordered_runs} == {(LIMITS,)}
-    assert len(ordered_runs) == 6
+    assert len(ordered_runs) == 7
 
 
 def test_all_checks_together_run_every_faulty_version(workspace: Workspace, ordered_runs: list[TestRun]) -> None:
@@ -59,6 +59,7 @@ def test_all_checks_together_run_every_faulty_version(workspace: Workspace, orde
     assert {purpose for _, purpose in examination.runs} == {fault.id for fault in faults()} | {
         "second",
         "reworded",
+        "bare",
         "backwards",
     }
     assert [order.files[0] for order in ordered_runs[:3]] == [LIMITS, GUARD, LAUNCH]
@@ -107,17 +108,17 @@ def examine(monkeypatch: pytest.MonkeyPatch, workspace: Workspace, fails: Verdic
 def _report(order: TestRun, fails: Verdict) -> Report:
     outcomes: dict[str, ClaimedOutcome] = {}
     for name in (f"test_limits::test[{letter}]" for letter in "abcdef"):
-        if name in order.without or (order.first_failure and ClaimedOutcome.FAILED in outcomes.values()):
+        if name in order.deselected or (order.exit_first and ClaimedOutcome.FAILED in outcomes.values()):
             continue
         outcomes[name] = ClaimedOutcome.FAILED if fails(order, name[-2]) else ClaimedOutcome.PASSED
     report = Report(None, int(ClaimedOutcome.FAILED in outcomes.values()), Claims(outcomes), 0, "")
-    return report if order.shown else report.closed(frozenset({"test_limits::test"}))
+    return report if order.is_public else report.closed(frozenset({"test_limits::test"}))
 
 
 def _kind(examination: Examination, order: TestRun) -> str:
     """Return the purpose of a run of the examination."""
     for salt in ((), ("again",)):
-        for purpose, run in examination._wanted(LIMITS, (), *salt).items():
+        for purpose, run in examination._plan(LIMITS, (), *salt).items():
             if order.version == run.version:
                 return purpose
     return "trial"
@@ -133,7 +134,7 @@ def test_a_test_that_fails_on_the_given_package_costs_no_line_that_the_others_se
     )
     examination.expect_right(LIMITS, "backwards")
     examination.expect_objection("slow", "it is a line.")
-    assert {order.without for order in orders[1:]} == {("test_limits::test[b]",)}
+    assert {order.deselected for order in orders[1:]} == {("test_limits::test[b]",)}
 
 
 def test_a_test_that_objects_to_a_right_version_is_left_out_and_costs_one_check(
@@ -149,7 +150,7 @@ def test_a_test_that_objects_to_a_right_version_is_left_out_and_costs_one_check(
     ):
         examination.expect_right(LIMITS, "backwards")
     examination.expect_objection("slow", "it is a line.")
-    assert orders[-1].without == ("test_limits::test[b]",)
+    assert orders[-1].deselected == ("test_limits::test[b]",)
 
 
 def test_tests_that_object_to_every_other_version_earn_no_line(

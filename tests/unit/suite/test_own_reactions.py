@@ -7,7 +7,7 @@ import math
 import pytest
 from geometry_msgs.msg import Twist
 
-from autograder.checks.ch02_nodes.support.robot import CONTRACT, is_stop, own_reactions
+from autograder.checks.ch02_nodes.support.robot import CONTRACT, is_stop, observed_reactions
 from autograder.harness import ReceivedMessage
 from autograder.suite import CheckFailed
 
@@ -24,7 +24,7 @@ def _commands(*pairs: Pair) -> list[ReceivedMessage]:
 
 
 def test_a_wrong_velocity_is_a_separate_reaction() -> None:
-    reactions = own_reactions(_commands((30.0, 0.0)), _commands((0.0, -0.5)))
+    reactions = observed_reactions(_commands((30.0, 0.0)), _commands((0.0, -0.5)))
     assert (reactions.forward, reactions.turn) == ((30.0, 0.0), (0.0, -0.5))
     reactions.expect_forward(_commands((30.0, 0.0)), "Now")
     with pytest.raises(CheckFailed, match=r"the robot drove forward at 0\.30 m/s: it should"):
@@ -45,11 +45,11 @@ def test_a_wrong_velocity_is_a_separate_reaction() -> None:
 def test_a_robot_without_reactions_is_compared_with_those_of_the_contract(
     clear: tuple[Pair, ...], blocked: tuple[Pair, ...]
 ) -> None:
-    assert own_reactions(_commands(*clear), _commands(*blocked)) == CONTRACT
+    assert observed_reactions(_commands(*clear), _commands(*blocked)) == CONTRACT
 
 
 def test_standing_still_counts_as_turning_if_a_robot_only_stops_for_obstacles() -> None:
-    reactions = own_reactions(_commands((0.3, 0.0)), _commands((0.0, 0.0)))
+    reactions = observed_reactions(_commands((0.3, 0.0)), _commands((0.0, 0.0)))
     assert reactions.turns(_commands((0.0, 0.0)))
     assert not reactions.drives(_commands((0.0, 0.0)))
 

@@ -20,7 +20,7 @@ from autograder.checks.ch02_nodes.support import robot as controller
 from autograder.checks.ch03_interfaces.hidden import action
 from autograder.checks.ch05_parameters.support import robot as configured
 from autograder.checks.ch08_capstone.support import contract as capstone
-from autograder.checks.ch08_capstone.support import system
+from autograder.checks.ch08_capstone.support import expectations
 from autograder.checks.ch09_assessment.support import contract as assessment
 from autograder.checks.ch09_assessment.support import robot as heater
 from autograder.course_paths import CHECKS
@@ -55,10 +55,12 @@ def _passes(check: Callable[..., None], *arguments: Any) -> bool:
 
 COMPARISONS = {
     "00 speed": Comparison(square._near, lambda _: square.TOLERANCE, -1.0, 1.0),
-    "01 speed": Comparison(lambda x, w: robots._is(_command(x), w, 0.0), lambda _: robots.TOLERANCE, -1.0, 1.0),
-    "02 forward": Comparison(lambda x, w: controller._is((x, 0.0), (w, 0.0)), lambda _: nodes.TOLERANCE, 0.0, 1.0),
-    "02 turn": Comparison(lambda x, w: controller._is((0.0, x), (0.0, w)), lambda _: nodes.TOLERANCE, 0.0, 1.0),
-    "03 speed": Comparison(lambda x, w: action.straight(_command(x).message, w), lambda _: action.SLACK, 0.0, 0.5),
+    "01 speed": Comparison(lambda x, w: robots._matches(_command(x), w, 0.0), lambda _: robots.TOLERANCE, -1.0, 1.0),
+    "02 forward": Comparison(lambda x, w: controller._matches((x, 0.0), (w, 0.0)), lambda _: nodes.TOLERANCE, 0.0, 1.0),
+    "02 turn": Comparison(lambda x, w: controller._matches((0.0, x), (0.0, w)), lambda _: nodes.TOLERANCE, 0.0, 1.0),
+    "03 speed": Comparison(
+        lambda x, w: action.drives_straight(_command(x).message, w), lambda _: action.SLACK, 0.0, 0.5
+    ),
     "05 speed": Comparison(
         lambda x, w: _passes(configured.expect_speed, x, w, ""), lambda _: configured.TOLERANCE, 0.0, 1.0
     ),
@@ -66,13 +68,15 @@ COMPARISONS = {
         lambda x, w: _passes(configured.expect_rate, x, w, ""), lambda w: configured.RATE_TOLERANCE * w, 1.0, 50.0
     ),
     "08 fastest": Comparison(
-        lambda x, w: _passes(system.expect_driving, [_command(x)], "", w) if x > w else system._near(x, w),
+        lambda x, w: (
+            _passes(expectations.expect_driving, [_command(x)], "", w) if x > w else expectations._is_near(x, w)
+        ),
         lambda _: capstone.TOLERANCE,
         0.05,
         0.5,
     ),
     "08 still": Comparison(
-        lambda x, w: _passes(system.expect_still, [_command(x - w)], ""), lambda _: capstone.TOLERANCE, 0.0, 1.0
+        lambda x, w: _passes(expectations.expect_still, [_command(x - w)], ""), lambda _: capstone.TOLERANCE, 0.0, 1.0
     ),
     "09 temperature": Comparison(heater.near, lambda _: assessment.TOLERANCE, -40.0, 100.0),
 }

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from autograder.author.verification.equivalent_rewrites import LONGEST_LINE, formatted, rewritten
+from autograder.author.verification.equivalent_rewrites import MAX_COLUMNS, formatted, rewritten
 
 MODULE = '''"""A robot that measures."""
 import math
@@ -96,6 +96,6 @@ def test_lines_stay_short_and_continuation_lines_stay_aligned() -> None:
         f"def area(width, height):\n    result = {'width * ' * 6}height if width < height else 0.0\n    return result\n"
     )
     for text in (rewritten(MODULE), rewritten(wide)):
-        assert max(map(len, text.splitlines())) <= LONGEST_LINE
+        assert max(map(len, text.splitlines())) <= MAX_COLUMNS
     assert "(limit > closest or\n" in rewritten(MODULE)
     assert " else 0.0\n" in rewritten(wide)  # turned round, the line would be too long

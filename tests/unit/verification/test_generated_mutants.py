@@ -33,10 +33,10 @@ def test_each_reason_for_a_survivor_names_an_existing_mutant(assignment: str) ->
 
 
 def test_the_name_of_a_mutant_does_not_change_with_other_code(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    from autograder.author.verification.generated_mutants import _named
+    from autograder.author.verification.generated_mutants import _make_mutant
 
-    before = _named("a.py", "f", "sign", ((4, 5, "2"),), "x = 1\n")
-    after = _named("a.py", "f", "sign", ((10, 11, "2"),), "y = 0\nx = 1\n")
+    before = _make_mutant("a.py", "f", "sign", ((4, 5, "2"),), "x = 1\n")
+    after = _make_mutant("a.py", "f", "sign", ((10, 11, "2"),), "y = 0\nx = 1\n")
     assert before.id == after.id
 
 

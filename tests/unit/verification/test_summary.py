@@ -59,6 +59,7 @@ def test_an_untouched_release_gains_no_points() -> None:
     assert verify_zero(result("nan")).startswith("it scores")
 
 
+@pytest.mark.promise("a release that does not build is not as expected")
 def test_a_release_that_students_cannot_begin_with_is_not_as_expected() -> None:
     without_points = result(*(check.id for check in SUITE.checks))
     unbuilt = replace(without_points, diagnosis=Diagnosis(Kind.BUILD_FAILED, "setup.py fails."))

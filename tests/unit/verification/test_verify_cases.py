@@ -17,7 +17,7 @@ from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.grade.job import Job, Options
-from autograder.grade.pipeline import refused
+from autograder.grade.pipeline import unclear_result
 from autograder.result.model import Status
 from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.process import ExitReason
@@ -59,7 +59,7 @@ class Recorder(OneByOne):
     def __call__(self, job: Job) -> WorkerReport:
         self.calls += 1
         digest = read_submission(job.path, job.assignment).sha256
-        result = refused(job, Diagnosis(Kind.OK, "It was looked at."))
+        result = unclear_result(job, Diagnosis(Kind.OK, "It was looked at."))
         recorded = replace(result, submission_sha256=digest, status=Status.GRADED).to_json()
         return WorkerReport(ExitReason.EXITED, 0, "", {"result.json": json.dumps(recorded).encode()})
 

@@ -1,4 +1,4 @@
-"""The visible checks of 00_welcome; it has no hidden ones, and no points."""
+"""The visible checks of 00_welcome, which has no hidden checks and no points."""
 
 PACKAGES = ("first_robot",)
 MODULES = ("square",)

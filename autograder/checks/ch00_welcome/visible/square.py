@@ -1,4 +1,4 @@
-"""What the student's square does: its function alone, and then the robot."""
+"""Checks of the student's square: first the function alone, then the robot."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from autograder.checking.probes import calls
 
 check = group("square")
 MODULE = "first_robot.square"
-SIDE, TURN = 4.0, 2.0  # s
-SPEED, RATE = 0.3, math.radians(90.0) / TURN
-TOLERANCE = 0.01  # m/s and rad/s: a speed may be rounded to two digits
+SIDE, TURN = 4.0, 2.0  # s for a side, and for the turn at a corner
+SPEED, RATE = 0.3, math.radians(90.0) / TURN  # m/s along a side; rad/s at a corner
+TOLERANCE = 0.01  # m/s and rad/s: a speed may be rounded to two decimal places
 DOC = "https://docs.python.org/3/library/stdtypes.html#numeric-types-int-float-complex"
 
 
@@ -49,22 +49,25 @@ def test_robot(workspace: Workspace) -> None:
         harness.run(SIDE + TURN)
         commands = [received.message for received in harness.messages("/cmd_vel")]
     expect(58 <= len(commands) <= 62, f"In 6 s it published {len(commands)} commands.")
-    forward = sum(_near(command.linear.x, SPEED) for command in commands) / 10.0
-    turning = sum(_near(command.angular.z, RATE) for command in commands) / 10.0
-    right = abs(forward - SIDE) <= 0.2 and abs(turning - TURN) <= 0.2
-    expect(right, f"In 6 s it drove for {forward:.1f} s and turned for {turning:.1f} s, instead of 4 s and 2 s.")
+    forward_seconds = sum(_near(command.linear.x, SPEED) for command in commands) / 10.0
+    turning_seconds = sum(_near(command.angular.z, RATE) for command in commands) / 10.0
+    is_square = abs(forward_seconds - SIDE) <= 0.2 and abs(turning_seconds - TURN) <= 0.2
+    expect(
+        is_square,
+        f"In 6 s it drove for {forward_seconds:.1f} s and turned for {turning_seconds:.1f} s, instead of 4 s and 2 s.",
+    )
 
 
 def _expect(workspace: Workspace, seconds: float, linear: float, angular: float) -> None:
-    shown = f"command_at({seconds:g})"
+    call_text = f"command_at({seconds:g})"
     (outcome,) = calls.calls(workspace, MODULE, calls.call("command_at", seconds))
-    got = calls.value(outcome, shown)
-    pair = isinstance(got, list) and len(got) == 2 and all(isinstance(x, int | float) for x in got)
-    expect(pair, f"{shown} returned {got} instead of two numbers.")
-    right = _near(got[0], linear) and _near(got[1], angular)
-    wanted = f"({linear:.3f}, {angular:.3f})"
-    expect(right, f"{shown} returned ({got[0]:.3f}, {got[1]:.3f}) instead of {wanted}.")
+    result = calls.value(outcome, call_text)
+    is_pair = isinstance(result, list) and len(result) == 2 and all(isinstance(x, int | float) for x in result)
+    expect(is_pair, f"{call_text} returned {result} instead of two numbers.")
+    is_correct = _near(result[0], linear) and _near(result[1], angular)
+    expected = f"({linear:.3f}, {angular:.3f})"
+    expect(is_correct, f"{call_text} returned ({result[0]:.3f}, {result[1]:.3f}) instead of {expected}.")
 
 
-def _near(got: float, wanted: float) -> bool:
-    return abs(got - wanted) <= TOLERANCE
+def _near(value: float, expected: float) -> bool:
+    return abs(value - expected) <= TOLERANCE

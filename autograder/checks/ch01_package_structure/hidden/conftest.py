@@ -1,4 +1,4 @@
-"""A fixture of the hidden checks: a copy of the package with more files."""
+"""A fixture of the hidden checks: a copy of the package with additional files."""
 
 from __future__ import annotations
 
@@ -14,6 +14,6 @@ WORDS = ("waltz", "polka", "samba", "rumba", "tango", "foxtrot")
 
 @pytest.fixture(scope="session")
 def extended(workspace: Workspace, seed: int) -> ExtendedPackage:
-    """The student's package with a launch file, a configuration and a subpackage more, built again."""
+    """A built copy of the student's package with an additional launch file, configuration and subpackages."""
     draw = random.Random(f"{seed}:grown")
     return extend(workspace, f"{draw.choice(WORDS)}_{draw.randrange(100, 1000)}")

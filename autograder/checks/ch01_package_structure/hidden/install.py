@@ -1,4 +1,4 @@
-"""What colcon installs of the package that the student makes: the judge of setup.py, setup.cfg and the marker."""
+"""Checks of what colcon installs from the package that the student makes: setup.py, setup.cfg and the marker."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from autograder.checking import Diagnosis, Workspace, expect, group, hint
 from autograder.checking.probes import installed, packaging
-from autograder.checks.ch01_package_structure.hidden.given import DANCE, HINTS, expect_given_tests
+from autograder.checks.ch01_package_structure.hidden.given_tests import DANCE, HINTS, expect_given_tests
 from autograder.checks.ch01_package_structure.support import contract
 from autograder.checks.ch01_package_structure.support.added_files import ExtendedPackage
 from autograder.checks.ch01_package_structure.support.assertions import (
@@ -104,6 +104,9 @@ def test_grows(extended: ExtendedPackage) -> None:
     """A new subpackage, launch file and configuration are installed without a change of setup.py."""
     missing = extended.missing
     expect(not missing, f"The new {', '.join(missing)} stayed behind.", fraction=1.0 - len(missing) / 4)
+    given_files = contract.DANCE_LAUNCH, contract.DANCE_CONFIG
+    lost_files = [name for name in given_files if extended.installation.read(name) is None]
+    expect(not lost_files, f"When a new file lay beside it, {' and '.join(lost_files)} stayed behind.", fraction=0.5)
 
 
 @check(points=1, covers=("tests-stay", "modules", "program"), needs=("builds",), doc=contract.SUBPACKAGES)
@@ -117,9 +120,11 @@ def test_tests_stay(extended: ExtendedPackage) -> None:
     strays = sorted(name for name in modules if name.split(".")[0] != contract.SQUARE_DANCE)
     expect(not strays, f"{', '.join(strays[:2])} was installed, a module beside {contract.SQUARE_DANCE}.", fraction=0.5)
     for name, module in extended.installation.programs.items():
-        if name != contract.DANCER:  # the dancer's own module is for other checks
-            said = f"The program {name} is installed, and its module {module} is not: remove it from console_scripts."
-            expect(module in modules, said, fraction=0.5)
+        if name != contract.DANCER:  # other checks test the dancer's module
+            message = (
+                f"The program {name} is installed, and its module {module} is not: remove it from console_scripts."
+            )
+            expect(module in modules, message, fraction=0.5)
 
 
 @check(points=1, covers="given", needs=("builds",), doc=contract.COLCON)

@@ -1,4 +1,4 @@
-"""package.xml of the package that the student makes: what colcon and rosdep read."""
+"""Checks of the file package.xml, which colcon and rosdep read, in the package that the student makes."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from autograder.checks.ch01_package_structure.support.assertions import (
     expect_declared,
     expect_licence,
     expect_manifest,
+    expect_rosdep_key,
     read_manifest,
     source_of,
 )
 
 check = group("manifest")
-DECLARE = (
+DECLARE_HINTS = (
     "All that a file imports, Python's own modules apart, comes from a package; name each in package.xml.",
     "rosdep reads package.xml alone: what is only in setup.py is never installed on another robot.",
 )
@@ -39,31 +40,36 @@ def test_licence(workspace: Workspace) -> None:
 @hint("ros2 pkg create leaves a TODO in the description.", "Say in half a sentence what the package is for.")
 def test_description(workspace: Workspace) -> None:
     """package.xml describes the package."""
-    said = read_manifest(workspace, contract.SQUARE_DANCE).description
-    expect(len(said.split()) >= 3 and manifest.PLACEHOLDER not in said, f"The description is {said!r}.")
+    description = read_manifest(workspace, contract.SQUARE_DANCE).description
+    expect(
+        len(description.split()) >= 3 and manifest.PLACEHOLDER not in description,
+        f"The description is {description!r}.",
+    )
 
 
 @check(points=2, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
-@hint(*DECLARE)
+@hint(*DECLARE_HINTS)
 def test_run_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the package's modules import, so that it is there when they run."""
-    needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), without=("test", "launch"))
-    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
+    needed_imports = imports.imported(source_of(workspace, contract.SQUARE_DANCE), without=("test", "launch"))
+    expect_declared(needed_imports, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
 @check(points=1, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
-@hint(*DECLARE)
+@hint(*DECLARE_HINTS)
 def test_launch_dependencies(workspace: Workspace) -> None:
     """package.xml declares what the launch file imports, by <exec_depend> or <depend>."""
-    needed = imports.imported(source_of(workspace, contract.SQUARE_DANCE), within=("launch",))
-    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
+    needed_imports = imports.imported(source_of(workspace, contract.SQUARE_DANCE), within=("launch",))
+    expect_declared(needed_imports, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 
 
 @check(points=1, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
-@hint(*DECLARE)
+@hint(*DECLARE_HINTS)
 def test_test_dependencies(workspace: Workspace) -> None:
     """package.xml declares what test/ imports, by <test_depend>."""
     source = source_of(workspace, contract.SQUARE_DANCE)
-    runs = {each.module for each in imports.imported(source, without=("test",))}
-    needed = [each for each in imports.imported(source, within=("test",)) if each.module not in runs]
-    expect_declared(needed, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec", "test"))
+    runtime_modules = {item.module for item in imports.imported(source, without=("test",))}
+    needed_imports = [item for item in imports.imported(source, within=("test",)) if item.module not in runtime_modules]
+    package_manifest = read_manifest(workspace, contract.SQUARE_DANCE)
+    expect_declared(needed_imports, package_manifest.needs("exec", "test"))
+    expect_rosdep_key(package_manifest.needs(), "pytest")

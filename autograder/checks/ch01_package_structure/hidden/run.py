@@ -1,4 +1,4 @@
-"""The dancer, started as `ros2 run` starts it."""
+"""Checks of the dancer, started as `ros2 run` starts it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HINTS = (
 
 @dataclass(frozen=True)
 class RunningDancer:
-    """A dancer in the harness, and how long the side of its square is, in metres."""
+    """A dancer in a harness, and the side length of its square in metres."""
 
     harness: SteppedHarness
     side: float
@@ -30,7 +30,7 @@ class RunningDancer:
 
 @pytest.fixture(scope="module")
 def running_dancer(workspace: Workspace, seed: int) -> Iterator[RunningDancer]:
-    """One dancer for the checks that it starts, and that it dances."""
+    """The dancer that the checks `starts` and `dances` share."""
     side = round(random.Random(f"{seed}:side").uniform(0.5, 1.5), 2)
     with robots.dancer(workspace, "-p", f"side:={side}") as harness:
         yield RunningDancer(harness, side)
@@ -59,8 +59,8 @@ def test_configured(workspace: Workspace, installed_dance: installed.Installed) 
     """With the installed configuration it dances a square of the size that is written there."""
     path = installed_dance.prefix / "share" / installed_dance.package / contract.DANCE_CONFIG
     side = _side(installed_dance.read(contract.DANCE_CONFIG) or b"")
-    given = contract.CONFIGURED_SIDE
-    expect(side == given, f"The configuration was given with a side of {given:g} m. Yours says {side:g} m.")
+    expected = contract.CONFIGURED_SIDE
+    expect(side == expected, f"The configuration was given with a side of {expected:g} m. Yours says {side:g} m.")
     with robots.dancer(workspace, "--params-file", str(path)) as harness:
         robots.expect_dance(harness, side)
 
@@ -71,6 +71,8 @@ def _side(text: bytes) -> float:
             side = student_yaml.load(text)["dancer"]["ros__parameters"]["side"]
         except (yaml.YAMLError, KeyError, TypeError):
             side = None
-    usable = isinstance(side, float) and 0.1 <= side <= 5.0
-    expect(usable, "The configuration does not set dancer: ros__parameters: side to a length in metres, such as 1.5.")
+    is_usable = isinstance(side, float) and 0.1 <= side <= 5.0
+    expect(
+        is_usable, "The configuration does not set dancer: ros__parameters: side to a length in metres, such as 1.5."
+    )
     return float(side or 0.0)

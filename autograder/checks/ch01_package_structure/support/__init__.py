@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 01_package_structure share."""
+"""Code that the visible and the hidden checks of 01_package_structure share."""

@@ -1,4 +1,4 @@
-"""New files are laid into a copy of the student's package, and its setup.py, as it is, has to install them."""
+"""Adds files to a copy of the student's package, whose unchanged setup.py has to install them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from autograder.checks.ch01_package_structure.support import contract
 
 @dataclass(frozen=True)
 class ExtendedPackage:
-    """What was installed of the copy, and which of its files are new.
+    """An installed copy of the student's package, and its new files.
 
     Attributes:
-        installation: what colcon installed of it.
+        installation: the files that colcon installed.
         shared: the new launch file and the new configuration.
-        modules: the new modules, each in a subpackage of its own; one is deeper, and has "test" within its name.
+        modules: the new modules, each in its own subpackage; one subpackage is nested, and its name contains "test".
     """
 
     installation: installed.Installed
@@ -34,8 +34,8 @@ def extend(workspace: Workspace, word: str) -> ExtendedPackage:
     """Copy the student's package, add files to it and build the copy.
 
     Args:
-        workspace: the built workspace; it is left as it is.
-        word: the name of the new files, one that no list written by hand holds.
+        workspace: the built workspace, which is not changed.
+        word: a word for the names of the new files, which no handwritten list contains.
 
     Raises:
         StudentError: the copy does not build.

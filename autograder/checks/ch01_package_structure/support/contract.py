@@ -1,4 +1,4 @@
-"""The contract of the exercises: the names that the checks use, and the pages to read."""
+"""The contract of the exercises: the names that the checks use, and the addresses of the pages to read."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ EMPTY_FILES = (
     "square_dance/nodes/__init__.py",
     "square_dance/utils/__init__.py",
 )
-SIDE, CONFIGURED_SIDE = 1.0, 1.5  # m, the default of the node and what the configuration says
-SPEED = 0.25  # m/s
-TURN = math.pi / 8  # rad/s
+SIDE, CONFIGURED_SIDE = 1.0, 1.5  # m: the default of the node, and the value in the configuration
+SPEED = 0.25  # m/s, along a side
+TURN = math.pi / 8  # rad/s, at a corner
 
 WALL_ALARM = "wall_alarm"
 ALARM = "alarm"
 ALARM_CONFIG = "config/wall_alarm.yaml"
-NEAR = 0.8  # m, in the alarm's configuration
+NEAR = 0.8  # m: the distance in the alarm's configuration
 
 LICENCE = "Apache-2.0"
-# The classifiers of setup.py that agree with it.
+# The classifiers in setup.py that agree with this licence.
 CLASSIFIERS = ("License :: OSI Approved", "License :: OSI Approved :: Apache Software License")
 BUILD_TYPE = "ament_python"
 

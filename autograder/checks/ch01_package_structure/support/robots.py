@@ -1,4 +1,4 @@
-"""The two programs in the harness: the dancer's commands, and the alarm's answer to a scan."""
+"""Harnesses for the two programs, and assertions on the dancer's commands and the alarm's answers to scans."""
 
 from __future__ import annotations
 
@@ -13,67 +13,73 @@ from autograder.checking import ReceivedMessage, SteppedHarness, Workspace, expe
 from autograder.checks.ch01_package_structure.support import contract
 
 CMD_VEL, SCAN, ALARM = "/cmd_vel", "/scan", "/alarm"
-TOLERANCE = 1e-3  # m/s and rad/s: the node is given, and its numbers go through unchanged
+TOLERANCE = 1e-3  # m/s and rad/s: the node is given, and publishes its numbers unchanged
 
 
 @contextmanager
 def dancer(workspace: Workspace, *arguments: str) -> Iterator[SteppedHarness]:
-    """Start the dancer."""
+    """Start the dancer in a harness."""
     with SteppedHarness(
-        workspace, contract.SQUARE_DANCE, contract.DANCER, subscribes={CMD_VEL: Twist}, arguments=_ros(arguments)
+        workspace,
+        contract.SQUARE_DANCE,
+        contract.DANCER,
+        subscribes={CMD_VEL: Twist},
+        arguments=_ros_arguments(arguments),
     ) as harness:
         yield harness
 
 
 @contextmanager
 def alarm(workspace: Workspace, *arguments: str) -> Iterator[SteppedHarness]:
-    """Start the alarm."""
+    """Start the alarm in a harness."""
     with SteppedHarness(
         workspace,
         contract.WALL_ALARM,
         contract.ALARM,
         publishes={SCAN: LaserScan},
         subscribes={ALARM: Bool},
-        arguments=_ros(arguments),
+        arguments=_ros_arguments(arguments),
     ) as harness:
         yield harness
 
 
 def expect_dance(harness: SteppedHarness, side: float) -> None:
     """Fail the check unless the dancer drives one side of this length and then turns to the left."""
-    straight = side / contract.SPEED
-    harness.run(straight + 2.0)
-    steps = harness.messages(CMD_VEL)
-    expect(bool(steps), "It published no command on /cmd_vel.")
-    before = [step for step in steps if step.seconds < straight - 0.3]
-    after = [step for step in steps if step.seconds > straight + 0.5]
+    side_seconds = side / contract.SPEED
+    harness.run(side_seconds + 2.0)
+    commands = harness.messages(CMD_VEL)
+    expect(bool(commands), "It published no command on /cmd_vel.")
+    side_commands = [command for command in commands if command.seconds < side_seconds - 0.3]
+    corner_commands = [command for command in commands if command.seconds > side_seconds + 0.5]
     expect(
-        bool(before) and all(_is(step, contract.SPEED, 0.0) for step in before),
-        f"With a side of {side:g} m it should drive straight on at {contract.SPEED} m/s for {straight:.1f} s.",
+        bool(side_commands) and all(_matches(command, contract.SPEED, 0.0) for command in side_commands),
+        f"With a side of {side:g} m it should drive straight on at {contract.SPEED} m/s for {side_seconds:.1f} s.",
     )
     expect(
-        bool(after) and all(_is(step, 0.0, contract.TURN) for step in after),
-        f"With a side of {side:g} m it should turn to the left after {straight:.1f} s.",
+        bool(corner_commands) and all(_matches(command, 0.0, contract.TURN) for command in corner_commands),
+        f"With a side of {side:g} m it should turn to the left after {side_seconds:.1f} s.",
     )
 
 
-def expect_alarm(harness: SteppedHarness, distance: float, wanted: bool) -> None:
-    """Fail the check unless the alarm answers a scan of things at this distance as it should."""
+def expect_alarm(harness: SteppedHarness, distance: float, expected: bool) -> None:
+    """Fail the check unless the alarm publishes the expected state for an obstacle at this distance."""
     expect(harness.takes(SCAN), "It does not subscribe to scan as sensor_msgs/LaserScan.")
-    began = harness.seconds
+    start = harness.seconds
     scan = LaserScan(range_min=0.1, range_max=10.0, angle_increment=0.1)
     scan.ranges = [9.0] * 30 + [distance] + [9.0] * 30
     harness.publish(SCAN, scan)
     harness.run(0.3)
-    answers = harness.messages(ALARM, since=began)
+    answers = harness.messages(ALARM, since=start)
     expect(bool(answers), "A scan got no answer on /alarm.")
-    seen = answers[-1].message.data
-    expect(seen is wanted, f"With something at {distance:.2f} m the alarm is {seen}, it should be {wanted}.")
+    state = answers[-1].message.data
+    expect(state is expected, f"With something at {distance:.2f} m the alarm is {state}, it should be {expected}.")
 
 
-def _is(step: ReceivedMessage, linear: float, angular: float) -> bool:
-    return bool(abs(step.message.linear.x - linear) <= TOLERANCE and abs(step.message.angular.z - angular) <= TOLERANCE)
+def _matches(command: ReceivedMessage, linear: float, angular: float) -> bool:
+    return bool(
+        abs(command.message.linear.x - linear) <= TOLERANCE and abs(command.message.angular.z - angular) <= TOLERANCE
+    )
 
 
-def _ros(arguments: tuple[str, ...]) -> tuple[str, ...]:
+def _ros_arguments(arguments: tuple[str, ...]) -> tuple[str, ...]:
     return ("--ros-args", *arguments) if arguments else ()

@@ -1,4 +1,4 @@
-"""The visible checks of 01_package_structure: they look at the packages' files, too, so a build may fail."""
+"""The visible checks of 01_package_structure: some only read the packages' files, so a build may fail."""
 
 PACKAGES = ("square_dance", "wall_alarm")
 MODULES = ("packages",)

@@ -1,4 +1,4 @@
-"""What colcon, rosdep and ros2 run would find of the two packages."""
+"""Checks of what colcon, rosdep and ros2 run find in the two packages."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_alarm_dependencies(workspace: Workspace) -> None:
 def test_alarm_facts(workspace: Workspace, installed_alarm: installed.Installed) -> None:
     """wall_alarm has the licence Apache-2.0 in both files, installs its configuration, and names pytest."""
     expect_licence(workspace, contract.WALL_ALARM)
-    said = packaging.licence(installed_alarm)
-    expect(said == contract.LICENCE, f"The licence is {said or 'missing'} in setup.py.")
+    licence = packaging.licence(installed_alarm)
+    expect(licence == contract.LICENCE, f"The licence is {licence or 'missing'} in setup.py.")
     expect_shared(installed_alarm, source_of(workspace, contract.WALL_ALARM), contract.ALARM_CONFIG)
     packaging.expect_pytest(workspace, installed_alarm)

@@ -1,4 +1,4 @@
-"""Whether a robot's track shows that it acts on what its lidar sees: one that drives blind may touch nothing, too."""
+"""Tests from a robot's track whether it reacts to its lidar: even a robot that ignores its lidar may touch nothing."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from sim import Recording
 
 Floats = NDArray[np.float64]
 
-TURNING = 0.1  # rad/s: who is slower drives straight on or stands
+MIN_TURN_RATE = 0.1  # rad/s: a robot with a lower rate drives straight on or stands still
 HALF_SECTOR = math.radians(30.0)
 
 
-def path(recording: Recording) -> Floats:
-    """Return the metres driven so far, one value a state."""
+def driven_distances(recording: Recording) -> Floats:
+    """Return how many metres the robot had driven at each recorded state."""
     steps = np.hypot(*np.diff(recording.poses[:, 0, :2], axis=0).T)
     return np.concatenate(([0.0], np.cumsum(steps)))
 
 
-def turns_at_things(recording: Recording, within: float, until: float = math.inf) -> bool:
-    """Return whether the robot turned, most of the time because something was within so many metres ahead.
+def turns_at_obstacles(recording: Recording, within: float, until: float = math.inf) -> bool:
+    """Return whether the robot turned, and had an obstacle close ahead for at least half of the time that it turned.
 
     Args:
         recording: a run of one robot with a lidar.
-        within: metres, somewhat more than the distance at which it has to turn.
-        until: seconds; what comes later does not count.
+        within: how far ahead an obstacle counts, in metres; somewhat more than the distance at which the robot turns.
+        until: a time in seconds; turns after it do not count.
     """
     log, lidar = recording.scans[0], recording.simulation.robots[0].lidar
     assert lidar is not None
     bearings = lidar.angle_min + lidar.angle_increment * np.arange(lidar.beams)
     is_ahead = np.abs(np.remainder(bearings + math.pi, math.tau) - math.pi) <= HALF_SECTOR
     nearest = np.nan_to_num(log.ranges[:, is_ahead], nan=np.inf, posinf=np.inf, neginf=0.0).min(axis=1)
-    turned = (np.abs(recording.velocities[log.rows, 0, 1]) > TURNING) & (recording.times[log.rows] <= until)
-    return bool(turned.any() and (nearest[turned] < within).mean() >= 0.5)
+    is_turning = (np.abs(recording.velocities[log.rows, 0, 1]) > MIN_TURN_RATE) & (recording.times[log.rows] <= until)
+    return bool(is_turning.any() and (nearest[is_turning] < within).mean() >= 0.5)

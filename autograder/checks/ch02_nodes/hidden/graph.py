@@ -1,6 +1,8 @@
-"""The node in the ROS graph: its name, its topics, their types, their QoS."""
+"""Checks of the node in the ROS graph: its name, and the names, types and QoS of its topics."""
 
 from __future__ import annotations
+
+import pytest
 
 from autograder.checking import CheckFailed, Workspace, expect, group, hint
 from autograder.checking.probes import namespaces, qos
@@ -40,8 +42,8 @@ def test_scan_qos(robot: Robot) -> None:
     """Its scan subscription matches a lidar that publishes best-effort; commands and status have plain queues."""
     reason = qos_mismatch(robot)
     expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
-    differs = qos.non_default_qos(robot.node, "/cmd_vel", "/status")
-    expect(not differs, differs, fraction=0.5)
+    difference = qos.non_default_qos(robot.node, "/cmd_vel", "/status")
+    expect(not difference, difference, fraction=0.5)
 
 
 @check(points=1, covers=("cmd-vel", "twist"), needs=("starts",))
@@ -60,20 +62,22 @@ def test_subscribes_status(robot: Robot) -> None:
 
 @check(
     points=1,
-    covers="relative",
+    covers=("relative", "kwargs"),
     needs=("starts",),
     after=("subscribes_scan", "publishes_cmd_vel", "subscribes_status"),
 )
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
-def test_relative(workspace: Workspace, robot: Robot) -> None:
+def test_relative(workspace: Workspace, robot: Robot, request: pytest.FixtureRequest) -> None:
     """All topic names are relative: in the namespace /a, scan is /a/scan."""
     node = robot.node
-    there = [topic for topic in ("scan", "status") if node.get_subscriptions_info_by_topic(f"/{topic}")]
-    there += ["cmd_vel"] if node.get_publishers_info_by_topic("/cmd_vel") else []
-    expect(bool(there), "It has none of the topics scan, status and cmd_vel, in no namespace.")
-    left = namespaces.missing_in_namespace(workspace, contract.PACKAGE, contract.EXECUTABLE, tuple(there))
-    expect(not left, left)
+    topics = [topic for topic in ("scan", "status") if node.get_subscriptions_info_by_topic(f"/{topic}")]
+    topics += ["cmd_vel"] if node.get_publishers_info_by_topic("/cmd_vel") else []
+    expect(bool(topics), "It has none of the topics scan, status and cmd_vel, in no namespace.")
+    reason = namespaces.missing_in_namespace(workspace, contract.PACKAGE, contract.EXECUTABLE, tuple(topics))
+    expect(not reason, reason)
+    wrong_arguments = request.getfixturevalue("two_nodes").wrong_arguments()
+    expect(not wrong_arguments, wrong_arguments, fraction=0.5)
 
 
 def _expect_endpoint(robot: Robot, kind: str, topic: str, type_name: str) -> None:
@@ -94,6 +98,6 @@ def _expect_endpoint(robot: Robot, kind: str, topic: str, type_name: str) -> Non
             for name, _ in list_by_node(node, space)
             if name not in ("/rosout", "/parameter_events", "/clock")
         ]
-        found = f"its {kind}s are on {', '.join(sorted(names))}" if names else f"it has no {kind}"
-        raise CheckFailed(f"There is no {kind} on {topic}: {found}.")
+        endpoints = f"its {kind}s are on {', '.join(sorted(names))}" if names else f"it has no {kind}"
+        raise CheckFailed(f"There is no {kind} on {topic}: {endpoints}.")
     expect(types == [type_name], f"The {kind} on {topic} has the type {', '.join(types)} instead of {type_name}.")

@@ -1,4 +1,4 @@
-"""A clean end: Ctrl-C, a launch system's SIGTERM, and an error of the program's own."""
+"""Checks of how the program ends: after Ctrl-C, after a launch system's SIGTERM, and after an error of its own."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
 from autograder.checks.ch02_nodes.support.shutdown import HINTS, START_SECONDS, expect_clean_end, last_line
 
 check = group("lifecycle")
-LONG_NAME = "a" * 300  # ROS refuses names of 256 letters and more
+LONG_NAME = "a" * 300  # ROS refuses names of 256 letters or more
 
 
 @check(points=2, covers="ends", needs=("starts",))
@@ -33,11 +33,12 @@ def test_sigterm(workspace: Workspace) -> None:
 def test_fails(workspace: Workspace) -> None:
     """Where its node cannot be made, it ends with that error and another exit status than 0."""
     arguments = ("--ros-args", "-r", f"__node:={LONG_NAME}")
-    ran = programs.run_program(workspace, PACKAGE, EXECUTABLE, arguments, START_SECONDS)
-    status, output = ran.status, ran.output
+    result = programs.run_program(workspace, PACKAGE, EXECUTABLE, arguments, START_SECONDS)
+    status, output = result.status, result.output
     case = f"Started with a node name of {len(LONG_NAME)} letters, which ROS refuses,"
     expect(status is not None, f"{case} it did not end within {START_SECONDS:.0f} s.")
     expect(status != 0, f"{case} it ended with exit status 0, as if it had been asked to: the error was swallowed.")
-    said = "error" in output.lower()  # an exception's class or text has the word; what rclpy warns of here has not
-    expect(said, f"{case} it ended with exit status {status}, and did not say which error it was.", fraction=0.5)
+    # The class or the text of an exception contains "error"; the warnings that rclpy logs here do not.
+    names_error = "error" in output.lower()
+    expect(names_error, f"{case} it ended with exit status {status}, and did not say which error it was.", fraction=0.5)
     expect("another exception" not in output, f"{case} its clean-up failed, too: {last_line(output)}", fraction=0.5)

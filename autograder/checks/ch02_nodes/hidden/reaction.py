@@ -1,31 +1,40 @@
-"""The reaction to what stands in front of the robot, and only to that."""
+"""Checks of the reaction to obstacles in front of the robot, and only to those."""
 
 from __future__ import annotations
 
 import math
 import random
 
+from hypothesis import strategies as st
+
 from autograder.checking import LOCKSTEP, group, hint
+from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch02_nodes.support import contract
-from autograder.checks.ch02_nodes.support.lidars import other_lidars
-from autograder.checks.ch02_nodes.support.robot import SETTLED, Reactions, Robot, expect_forward, expect_turn
+from autograder.checks.ch02_nodes.support.drawn_scans import SEVERAL_TURNS, any_lidars, drawn_scans
+from autograder.checks.ch02_nodes.support.robot import (
+    SETTLED,
+    Reactions,
+    Robot,
+    case_count,
+    expect_forward,
+    expect_turn,
+)
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
 check = group("reaction")
-TALKS = ("subscribes_scan", "publishes_cmd_vel")
-REACTS = ("forward_when_clear", "turns_when_blocked")
-NEAR = 0.13, 0.18  # m, which is near for whatever limit a robot has, and can be measured
-EDGE = 1.0  # degrees from the edge of the forward sector, which is left open: half a radian is no 30 degrees
-# How many beams a lidar has, and how far to each side of a bearing, in degrees, something is seen: by one beam of the
-# first, by three of the second, for a robot that does not believe in one.
+TOPIC_CHECKS = ("subscribes_scan", "publishes_cmd_vel")
+REACTION_CHECKS = ("forward_when_clear", "turns_when_blocked")
+NEAR = 0.13, 0.18  # m: nearer than any limit that a robot may have, and above range_min
+# Degrees to each side of the sector's edge that are not tested; a half sector of 0.5 rad (28.6°) is still detected.
+EDGE = 1.0
+# A lidar's number of beams, and half the width of an obstacle in degrees. One beam of the coarse lidar hits the
+# obstacle. So do three beams of the fine one, for a robot that ignores a single beam.
 COARSE, FINE = (360, 0.6), (1800, 0.3)
-JUST_BELOW = 0.003  # m: who rounds a distance, even to centimetres, takes it for the limit
-SEEN_SECONDS = 0.5  # s for which one of many scans is shown, again and again
-BESIDE = Part(40.0, 180.0, 0.0), Part(-180.0, -40.0, 0.0)  # degrees; all that is not ahead
-SHOWN_SECONDS = 0.4  # s for which one scan is judged: there are commands after SETTLED, and the scan is not old yet
+JUST_BELOW = 0.003  # m below the limit: rounded to centimetres, this distance is the limit
+SINGLE_SCAN_SECONDS = 0.4  # s to run after a single scan: more than SETTLED, and the scan is not stale yet
 
 
-@check(points=2, covers=("clear", "in-range"), needs=TALKS)
+@check(points=2, covers=("clear", "in-range"), needs=TOPIC_CHECKS)
 @hint(contract.RULE_FORWARD, "Look at the last branch of control_loop.")
 def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
     """It drives straight on at 0.3 m/s while the nearest thing in front is far away."""
@@ -33,98 +42,92 @@ def test_forward_when_clear(robot: Robot, draw: random.Random) -> None:
     expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
 
 
-@check(points=2, covers=("near", "in-range"), needs=TALKS)
+@check(points=2, covers=("near", "in-range"), needs=TOPIC_CHECKS)
 @hint(contract.RULE_TURN, "Look at the middle branch of control_loop.")
 def test_turns_when_blocked(robot: Robot, draw: random.Random) -> None:
     """It turns left on the spot while something stands within 1 m in front."""
     distance = draw.uniform(0.3, 0.8)
-    blocked = scan(Part(-5.0, 5.0, distance))
-    expect_turn(robot.see(blocked), f"With something {distance:.2f} m ahead")
-    lone = scan(Part(0.0, 0.0, distance))
-    expect_turn(robot.see(lone), f"With a single beam that reads {distance:.2f} m, straight ahead", fraction=0.75)
+    blocked_scan = scan(Part(-5.0, 5.0, distance))
+    expect_turn(robot.see(blocked_scan), f"With something {distance:.2f} m ahead")
+    single_beam = scan(Part(0.0, 0.0, distance))
+    expect_turn(
+        robot.see(single_beam), f"With a single beam that reads {distance:.2f} m, straight ahead", fraction=0.75
+    )
 
 
-@check(points=2, covers=("near", "clear"), needs=TALKS, after=REACTS)
+@check(points=2, covers=("near", "clear"), needs=TOPIC_CHECKS, after=REACTION_CHECKS)
 @hint("The limit is 1.0 m: nearer blocks, farther does not.", "Compare metres with metres, and with < rather than <=.")
-def test_threshold(robot: Robot, own: Reactions, draw: random.Random) -> None:
+def test_threshold(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
     """Its limit is 1 m: a little nearer blocks, a little farther does not."""
     margin = draw.uniform(0.02, 0.06)
     limit = contract.SAFETY_DISTANCE
     near, far = limit - margin, limit + margin
     for distance, expect_reaction, fraction in (
-        (near, own.expect_turn, 0.0),
-        (far, own.expect_forward, 0.0),
-        (limit, own.expect_forward, 0.0),  # not nearer than that, and exact in a message's float32
-        (limit - JUST_BELOW, own.expect_turn, 0.75),
+        (near, reactions.expect_turn, 0.0),
+        (far, reactions.expect_forward, 0.0),
+        (limit, reactions.expect_forward, 0.0),  # not nearer than the limit, and exact in a message's float32
+        (limit - JUST_BELOW, reactions.expect_turn, 0.75),
     ):
-        seen = robot.see(scan(Part(-3.0, 3.0, distance)))
-        expect_reaction(seen, f"With something {distance:.3f} m ahead", fraction=fraction)
-    if robot.time == LOCKSTEP:  # elsewhere so short a time may hold no command
+        commands = robot.see(scan(Part(-3.0, 3.0, distance)))
+        expect_reaction(commands, f"With something {distance:.3f} m ahead", fraction=fraction)
+    if robot.time == LOCKSTEP:  # in real time, perhaps no command comes in so short a time
         for distance, expect_reaction in (
-            (far, own.expect_forward),
-            (near, own.expect_turn),
-        ):  # each unlike the scans before
-            began = robot.seconds
-            robot.show(scan(Part(-3.0, 3.0, distance)), SHOWN_SECONDS)
-            seen = robot.messages("/cmd_vel", since=began + SETTLED)
-            expect_reaction(seen, f"After a single scan with something {distance:.2f} m ahead", fraction=0.75)
+            (far, reactions.expect_forward),
+            (near, reactions.expect_turn),
+        ):  # each scan calls for a different reaction than the scan before it
+            start = robot.seconds
+            robot.show(scan(Part(-3.0, 3.0, distance)), SINGLE_SCAN_SECONDS)
+            commands = robot.messages("/cmd_vel", since=start + SETTLED)
+            expect_reaction(commands, f"After a single scan with something {distance:.2f} m ahead", fraction=0.75)
 
 
-@check(points=3, covers=("sector", "minus-inf"), needs=TALKS, after=REACTS, doc=contract.LASER_SCAN)
+@check(points=3, covers=("sector", "minus-inf"), needs=TOPIC_CHECKS, after=REACTION_CHECKS, doc=contract.LASER_SCAN)
 @hint("Only beams within 30° of forward count; min(msg.ranges) is over all of them.")
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi].")
-def test_only_forward_counts(robot: Robot, own: Reactions, draw: random.Random) -> None:
+def test_only_forward_counts(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
     """It looks 30° to each side, and ignores what stands beside and behind it."""
     near = draw.uniform(*NEAR)
     for name, first, last in (("behind", 150.0, 180.0), ("to the left", 45.0, 110.0), ("to the right", -110.0, -45.0)):
-        own.expect_forward(
+        reactions.expect_forward(
             robot.see(scan(Part(first, last, near))), f"With a wall {near:.2f} m {name} and nothing ahead"
         )
-    beams, wide = COARSE if own.turns(robot.see(scan(Part(0.0, 0.0, near)))) else FINE
+    beams, half_width = COARSE if reactions.turns(robot.see(scan(Part(0.0, 0.0, near)))) else FINE
     for side in (-1.0, 1.0):
-        inside, outside = (side * (contract.HALF_SECTOR + off) for off in (-EDGE, EDGE))
-        edge = scan(Part(inside - wide, inside + wide, near), beams=beams)
-        own.expect_turn(robot.see(edge), f"With something {near:.2f} m away at {inside:.0f}°, in the forward sector")
-        edge = scan(Part(outside - wide, outside + wide, near), beams=beams)
-        own.expect_forward(robot.see(edge), f"With something {near:.2f} m away at {outside:.0f}°, outside of it")
+        inside, outside = (side * (contract.HALF_SECTOR + offset) for offset in (-EDGE, EDGE))
+        edge = scan(Part(inside - half_width, inside + half_width, near), beams=beams)
+        reactions.expect_turn(
+            robot.see(edge), f"With something {near:.2f} m away at {inside:.0f}°, in the forward sector"
+        )
+        edge = scan(Part(outside - half_width, outside + half_width, near), beams=beams)
+        reactions.expect_forward(robot.see(edge), f"With something {near:.2f} m away at {outside:.0f}°, outside of it")
     around = (Part(first, last, -math.inf) for first, last in ((150.0, 180.0), (45.0, 110.0), (-110.0, -45.0)))
-    own.expect_forward(robot.see(scan(*around)), "With -inf behind and at both sides and nothing ahead", fraction=0.85)
+    reactions.expect_forward(
+        robot.see(scan(*around)), "With -inf behind and at both sides and nothing ahead", fraction=0.85
+    )
 
 
 @check(
     points=2,
     covers=("bearings", "sector"),
-    needs=TALKS,
-    after=(*REACTS, "only_forward_counts"),
+    needs=TOPIC_CHECKS,
+    after=(*REACTION_CHECKS, "only_forward_counts"),
     doc=contract.LASER_SCAN,
 )
 @hint("Beam 0 does not always look forward: on many lidars it looks backward.")
 @hint("Use angle_min and angle_increment of the message, never a fixed index or a fixed number of beams.")
 @hint("math.remainder(bearing, math.tau) wraps any bearing, from above and from below, by as many turns as it takes.")
-def test_other_lidars(robot: Robot, own: Reactions, draw: random.Random) -> None:
+def test_other_lidars(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
     """It reads bearings from the message: any number of beams, any first bearing."""
     near = draw.uniform(*NEAR)
-    many = draw.randrange(500, 800)
-    for beams, first, last in ((many, -180.0, None), (1081, -135.0, 135.0), (181, -90.0, 90.0)):
+    beam_count = draw.randrange(500, 800)
+    for beams, first, last in ((beam_count, -180.0, None), (1081, -135.0, 135.0), (181, -90.0, 90.0)):
         name = f"from a lidar of {beams} beams that starts at {first:.0f}°"
         ahead = scan(Part(-5.0, 5.0, near), beams=beams, first_bearing=first, last_bearing=last)
         aside = scan(Part(60.0, 85.0, near), beams=beams, first_bearing=first, last_bearing=last)
-        own.expect_turn(robot.see(ahead), f"With something {near:.2f} m ahead, {name}")
-        own.expect_forward(robot.see(aside), f"With something {near:.2f} m to the left, {name}", fraction=0.5)
-    # Who wraps no bearing errs at the right, who counts beams errs far from the middle.
-    for right, left, expect_reaction in (
-        (-85.0, -60.0, own.expect_forward),
-        (-28.0, -22.0, own.expect_turn),
-        (22.0, 28.0, own.expect_turn),
-    ):
-        shown = scan(Part(right, left, near), beams=many, first_bearing=-180.0)
-        where = f"away, from {right:.0f}° to {left:.0f}°, from a lidar of {many} beams that starts at -180°"
-        expect_reaction(robot.see(shown), f"With something {near:.2f} m {where}", fraction=0.75)
-    for lidar in other_lidars(draw):
-        for bearing in (draw.uniform(-26.0, -8.0), draw.uniform(8.0, 26.0)):
-            for seen_at in lidar.sees(bearing):
-                said = f"With something {near:.2f} m away at {seen_at:.0f}°, which is {bearing:.0f}°, from {lidar}"
-                own.expect_turn(robot.see(lidar.scan_of_one(seen_at, near), SEEN_SECONDS), said, fraction=0.75)
-        beside = lidar.scan(*(Part(part.first, part.last, near) for part in BESIDE))
-        said = f"With walls {near:.2f} m away beside and behind, and nothing ahead, from {lidar}"
-        own.expect_forward(robot.see(beside, SEEN_SECONDS), said, fraction=0.75)
+        reactions.expect_turn(robot.see(ahead), f"With something {near:.2f} m ahead, {name}")
+        reactions.expect_forward(robot.see(aside), f"With something {near:.2f} m to the left, {name}", fraction=0.5)
+    readings, rest = st.sampled_from((near, 2.0)), st.just(3.0)
+    for lidars, share in ((any_lidars(), 0.7), (SEVERAL_TURNS, 0.3)):
+        scan_strategy = drawn_scans(readings, rest, lidars=lidars)
+        count = math.ceil(share * case_count(robot))
+        expect_each(scan_strategy, lambda case: reactions.expect_for(robot, case, fraction=0.75), draw, count=count)

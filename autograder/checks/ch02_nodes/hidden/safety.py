@@ -1,10 +1,11 @@
-"""Safety: a robot that knows nothing does not move."""
+"""Checks of safety: a robot without a fresh scan does not move."""
 
 from __future__ import annotations
 
 import random
 import statistics
 
+import pytest
 from sensor_msgs.msg import LaserScan
 
 from autograder.checking import LOCKSTEP, SCAN_SECONDS, Workspace, expect, group, hint
@@ -19,107 +20,116 @@ from autograder.checks.ch02_nodes.support.robot import (
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 
 check = group("safety")
-TALKS = ("subscribes_scan", "publishes_cmd_vel")
-MARGIN = 0.02  # s around the time-out, two of the shortest steps: a tenth too much is seen
-# Where time is real, a command comes when it comes. Between the last that drives and the first that stops lies the
-# time-out, somewhere; the median of many is it, to a hundredth of a second.
+TOPIC_CHECKS = ("subscribes_scan", "publishes_cmd_vel")
+MARGIN = 0.02  # s before and after the time-out: two short steps; a time-out that is 10 % too long is detected
+# In real time, the time-out is somewhere between the last command that drives and the first that stops. The median of
+# many trials is accurate to a hundredth of a second.
 TRIALS = 12
-REAL_MARGIN = 0.04  # s: a tenth too much is seen there, too
-AFTER = 0.25  # s after the time-out: the first command that stops has come
-LATE = 2.0  # s: how old a stamp is, of a scan of which only the arrival counts
-FINE = 0.01  # s between two looks at the clock
-# Of ROS time: how fast the machine's clocks run for a robot that must not look at them.
+REAL_MARGIN = 0.04  # s; small enough to detect a time-out that is 10 % too long
+STOP_SECONDS = 0.25  # s after the time-out within which the first command that stops must come
+STAMP_AGE = 2.0  # s: the age of a scan's stamp, which the robot must ignore
+STEP = 0.01  # s: the length of a step where the time of each command matters
+# How fast the machine's clocks run, relative to ROS time, for a robot that must not use them.
 SLOW, FAST = 0.25, 8.0
 
 
 @check(points=2, covers=("no-scan", "cmd-vel"), needs=("publishes_cmd_vel",))
 @hint("obstacle_detected = False at the start means: drive before anything was seen.")
 @hint("Start with last_scan = None, and let None mean stop.")
-def test_stops_before_first_scan(fresh_robot: Robot) -> None:
+def test_stops_before_first_scan(fresh_robot: Robot, request: pytest.FixtureRequest) -> None:
     """It stands still, and says so on cmd_vel, until the first scan has come."""
-    expect_stop(fresh_robot.left_alone(1.5), "Before the first scan")
+    expect_stop(fresh_robot.leave_alone(1.5), "Before the first scan")
+    shared_scan = request.getfixturevalue("two_nodes").shared_scan()
+    expect(not shared_scan, shared_scan, fraction=0.75)
 
 
-@check(points=3, covers=("stale", "ros-time"), needs=TALKS, after=("forward_when_clear",))
+@check(points=3, covers=("stale", "ros-time"), needs=TOPIC_CHECKS, after=("forward_when_clear",))
 @hint("Remember when the last scan came, by self.get_clock().now().")
 @hint("In control_loop, compare now with that time: older than 0.5 s means stop.")
-def test_stops_when_stale(workspace: Workspace, robot: Robot, own: Reactions, draw: random.Random) -> None:
+def test_stops_when_stale(workspace: Workspace, robot: Robot, reactions: Reactions, draw: random.Random) -> None:
     """It stands still when the newest scan is older than 0.5 s of ROS time: the lidar has died."""
     distance = draw.uniform(1.5, 3.0)
-    own.expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
+    reactions.expect_forward(robot.see(scan(fill=distance)), f"With {distance:.2f} m of free space all around")
     if robot.time != LOCKSTEP:
-        _expect_timeout(robot, own, scan(fill=distance))
+        _expect_timeout(robot, reactions, scan(fill=distance))
         return
-    last, first = contract.STALE_AFTER - MARGIN, contract.STALE_AFTER + MARGIN
-    came = _show_before_command(robot, scan(fill=distance), last - 0.01)
-    _run_finely(robot, last)
-    fresh = robot.messages("/cmd_vel", since=came + SETTLED, until=came + last)
-    own.expect_forward(fresh, f"{last:.2f} s after the last scan and earlier")
+    fresh_until, stale_from = contract.STALE_AFTER - MARGIN, contract.STALE_AFTER + MARGIN
+    arrival = _show_before_command(robot, scan(fill=distance), fresh_until - 0.01)
+    _run_in_short_steps(robot, fresh_until)
+    commands = robot.messages("/cmd_vel", since=arrival + SETTLED, until=arrival + fresh_until)
+    reactions.expect_forward(commands, f"{fresh_until:.2f} s after the last scan and earlier")
     robot.see(scan(fill=distance), 0.5)
-    came = _show_before_command(robot, scan(fill=distance), first + 0.01)
-    _run_finely(robot, 2.0)
-    expect_stop(robot.messages("/cmd_vel", since=came + first), f"{first:.2f} s after the last scan and later")
-    _expect_ros_time(workspace, own, scan(fill=distance))
+    arrival = _show_before_command(robot, scan(fill=distance), stale_from + 0.01)
+    _run_in_short_steps(robot, 2.0)
+    expect_stop(
+        robot.messages("/cmd_vel", since=arrival + stale_from), f"{stale_from:.2f} s after the last scan and later"
+    )
+    _expect_ros_time(workspace, reactions, scan(fill=distance))
 
 
-@check(points=1, covers=("stale", "clear", "ros-time"), needs=TALKS, after=("stops_when_stale",))
+@check(points=1, covers=("stale", "clear", "ros-time"), needs=TOPIC_CHECKS, after=("stops_when_stale",))
 @hint("Keep looking at the age of the newest scan; a stop is no state to be stuck in.")
-def test_recovers(robot: Robot, own: Reactions, draw: random.Random) -> None:
+def test_recovers(robot: Robot, reactions: Reactions, draw: random.Random) -> None:
     """It drives again when scans come again."""
     distance = draw.uniform(1.5, 3.0)
     robot.see(scan(Part(-10.0, 10.0, 0.5)), 0.5)
-    robot.left_alone(1.0)
-    blind = robot.left_alone(1.0)
-    own.expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")
-    expect_stop(blind, "In the last second of a break of 2 s, which began in front of a wall", fraction=0.5)
-    late = robot.see(scan(fill=distance), late=LATE)
-    own.expect_forward(late, f"With scans that arrive now, and whose stamps are {LATE:g} s old", fraction=0.5)
+    robot.leave_alone(1.0)
+    blind_commands = robot.leave_alone(1.0)
+    reactions.expect_forward(robot.see(scan(fill=distance)), "When scans come again after a break of 2 s")
+    expect_stop(blind_commands, "In the last second of a break of 2 s, which began in front of a wall", fraction=0.5)
+    commands = robot.see(scan(fill=distance), age=STAMP_AGE)
+    reactions.expect_forward(
+        commands, f"With scans that arrive now, and whose stamps are {STAMP_AGE:g} s old", fraction=0.5
+    )
 
 
-def _expect_timeout(robot: Robot, own: Reactions, shown: LaserScan) -> None:
-    """Fail the check unless a robot in real time takes a scan for old when it is, in the median of many times."""
-    seen = []
-    for number in range(TRIALS):
-        robot.see(shown, 2 * SCAN_SECONDS)
-        robot.run(SCAN_SECONDS * number / TRIALS)  # so that its timer fires at another age of the scan each time
-        came = robot.seconds
-        robot.show(shown, contract.STALE_AFTER + AFTER)
-        commands = robot.messages("/cmd_vel", since=came)
-        driving = [received.seconds - came for received in commands if own.drives([received])]
-        stopped = [received.seconds - came for received in commands if is_stop(received)]
-        expect(bool(driving), "In the first half second after a scan that shows a clear way, it did not drive.")
-        expect(bool(stopped), f"{contract.STALE_AFTER + AFTER:g} s after the last scan, it had not stopped.")
-        seen.append((driving[-1] + stopped[0]) / 2)
-    timeout = statistics.median(seen)
-    right = abs(timeout - contract.STALE_AFTER) <= REAL_MARGIN
-    expect(right, f"It stopped {timeout:.2f} s after the last scan, instead of after {contract.STALE_AFTER:g} s.")
+def _expect_timeout(robot: Robot, reactions: Reactions, message: LaserScan) -> None:
+    """Fail the check unless the median of a robot's time-outs in real time is right."""
+    timeouts = []
+    for trial in range(TRIALS):
+        robot.see(message, 2 * SCAN_SECONDS)
+        # In each trial, the robot's timer fires at a different age of the scan.
+        robot.run(SCAN_SECONDS * trial / TRIALS)
+        arrival = robot.seconds
+        robot.show(message, contract.STALE_AFTER + STOP_SECONDS)
+        commands = robot.messages("/cmd_vel", since=arrival)
+        drive_times = [received.seconds - arrival for received in commands if reactions.drives([received])]
+        stop_times = [received.seconds - arrival for received in commands if is_stop(received)]
+        expect(bool(drive_times), "In the first half second after a scan that shows a clear way, it did not drive.")
+        expect(bool(stop_times), f"{contract.STALE_AFTER + STOP_SECONDS:g} s after the last scan, it had not stopped.")
+        timeouts.append((drive_times[-1] + stop_times[0]) / 2)
+    timeout = statistics.median(timeouts)
+    is_right = abs(timeout - contract.STALE_AFTER) <= REAL_MARGIN
+    expect(is_right, f"It stopped {timeout:.2f} s after the last scan, instead of after {contract.STALE_AFTER:g} s.")
 
 
-def _expect_ros_time(workspace: Workspace, own: Reactions, shown: LaserScan) -> None:
-    """Fail the check if the age of a scan depends on another clock than that of ROS."""
+def _expect_ros_time(workspace: Workspace, reactions: Reactions, message: LaserScan) -> None:
+    """Fail the check if the age of a scan depends on a clock other than ROS time."""
     with Robot(workspace, clock_rate=SLOW) as robot:
-        robot.see(shown)
+        robot.see(message)
         robot.run(contract.STALE_AFTER + MARGIN)
-        blind = robot.left_alone(contract.STALE_AFTER)
-        expect_stop(blind, f"Where ROS time runs {1 / SLOW:g} times as fast as the machine's clocks, without a scan")
+        blind_commands = robot.leave_alone(contract.STALE_AFTER)
+        expect_stop(
+            blind_commands, f"Where ROS time runs {1 / SLOW:g} times as fast as the machine's clocks, without a scan"
+        )
     with Robot(workspace, clock_rate=FAST) as robot:
-        seen = robot.see(shown)
-        said = f"Where the machine's clocks run {FAST:g} times as fast as ROS time, with a clear way"
-        own.expect_forward(seen, said, fraction=0.5)
+        commands = robot.see(message)
+        situation = f"Where the machine's clocks run {FAST:g} times as fast as ROS time, with a clear way"
+        reactions.expect_forward(commands, situation, fraction=0.5)
 
 
-def _show_before_command(robot: Robot, shown: LaserScan, age: float) -> float:
-    """Show a scan so that a command comes when it is `age` seconds old; return when it arrived."""
-    _run_finely(robot, SCAN_SECONDS)
-    told = robot.messages("/cmd_vel")
-    expect(bool(told), "No command came on /cmd_vel.")
-    command = told[-1].seconds
-    _run_finely(robot, (command - age - FINE - robot.seconds) % SCAN_SECONDS)
-    robot.show(shown, FINE)
+def _show_before_command(robot: Robot, message: LaserScan, age: float) -> float:
+    """Publish a scan so that a command comes when the scan is `age` seconds old; return when the scan arrived."""
+    _run_in_short_steps(robot, SCAN_SECONDS)
+    commands = robot.messages("/cmd_vel")
+    expect(bool(commands), "No command came on /cmd_vel.")
+    last_command = commands[-1].seconds
+    _run_in_short_steps(robot, (last_command - age - STEP - robot.seconds) % SCAN_SECONDS)
+    robot.show(message, STEP)
     return robot.seconds
 
 
-def _run_finely(robot: Robot, seconds: float) -> None:
-    """Let time pass in short steps, so that it is known when each command came."""
-    for _ in range(round(seconds / FINE)):
-        robot.run(FINE)
+def _run_in_short_steps(robot: Robot, seconds: float) -> None:
+    """Run in short steps, so that the time of each command is known."""
+    for _ in range(round(seconds / STEP)):
+        robot.run(STEP)

@@ -1,4 +1,4 @@
-"""Hidden worlds, drawn from the seed: each has walls with names, and free space around the start."""
+"""Hidden worlds, drawn from the seed: each has named walls, and free space around the start."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import random
 
 from sim import BOX_NAMES, Pose, World, box
 
-FREE = 1.2  # m around the start without anything in it
+FREE_RADIUS = 1.2  # m: the radius of the free space around the start
 WALLS = [f"the {name}" for name in BOX_NAMES]
-GAP = 1.4  # m between two obstacles, so that no two make a trap
+GAP = 1.4  # m between two obstacles, so that a robot fits through
 
 
 def furnished_room(draw: random.Random) -> World:
-    """A rectangular room with a few pieces of furniture."""
+    """Draw a rectangular room with a few pieces of furniture."""
     width, height = draw.uniform(6.5, 8.0), draw.uniform(5.0, 6.5)
     segments, names = box(width, height).tolist(), list(WALLS)
     for x, y in _places(draw, 3, width / 2 - 1.2, height / 2 - 1.2):
@@ -24,7 +24,7 @@ def furnished_room(draw: random.Random) -> World:
 
 
 def hall_of_pillars(draw: random.Random) -> World:
-    """A hall with round pillars."""
+    """Draw a hall with round pillars."""
     width, height = draw.uniform(7.0, 8.5), draw.uniform(6.0, 7.5)
     circles = [(x, y, draw.uniform(0.12, 0.35)) for x, y in _places(draw, 6, width / 2 - 1.0, height / 2 - 1.0)]
     return World.from_segments(
@@ -38,7 +38,7 @@ def hall_of_pillars(draw: random.Random) -> World:
 
 
 def bent_corridor(draw: random.Random) -> World:
-    """A corridor with one bend to the left, closed at both ends."""
+    """Draw a corridor with one bend to the left, closed at both ends."""
     width, first, second = draw.uniform(2.2, 2.8), draw.uniform(5.0, 6.5), draw.uniform(4.0, 5.5)
     half = width / 2
     corners = [
@@ -60,11 +60,11 @@ def _start(draw: random.Random) -> Pose:
 
 
 def _places(draw: random.Random, count: int, half_width: float, half_height: float) -> list[tuple[float, float]]:
-    """Draw places for `count` obstacles, apart from each other and from the start; fewer where they do not fit."""
+    """Draw `count` places, or fewer if not all of them fit, that are apart from each other and from the start."""
     places: list[tuple[float, float]] = []
     for _ in range(60):
         x, y = draw.uniform(-half_width, half_width), draw.uniform(-half_height, half_height)
-        if math.hypot(x, y) > FREE and all(math.hypot(x - a, y - b) > GAP for a, b in places):
+        if math.hypot(x, y) > FREE_RADIUS and all(math.hypot(x - a, y - b) > GAP for a, b in places):
             places.append((x, y))
         if len(places) == count:
             break

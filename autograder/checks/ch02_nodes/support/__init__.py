@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 02_nodes share."""
+"""Code that the visible and the hidden checks of 02_nodes share."""

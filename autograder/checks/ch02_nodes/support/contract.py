@@ -1,4 +1,4 @@
-"""The contract of the exercise, in numbers, and the names that the checks use."""
+"""The numbers in the exercise's contract, and the names that the checks use."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ NODE = "/robot_controller"
 FORWARD = 0.3  # m/s
 TURN = 0.5  # rad/s, to the left
 PERIOD = 0.1  # s between two commands
-SAFETY_DISTANCE = 1.0  # m
-HALF_SECTOR = 30.0  # degrees
-STALE_AFTER = 0.5  # s
-BLOCKED_SECONDS = 6.0  # in front of a wall, for the checks of warnings
-SILENT_SECONDS = 1.5  # the longest that it may then wait with a warning
+SAFETY_DISTANCE = 1.0  # m: something nearer ahead blocks the way
+HALF_SECTOR = 30.0  # degrees to each side of straight ahead
+STALE_AFTER = 0.5  # s: an older scan does not count
+BLOCKED_SECONDS = 6.0  # s in front of a wall, for the checks of warnings
+SILENT_SECONDS = 1.5  # s: the longest time without a warning while the way is blocked
 MIN_WARNINGS = int(BLOCKED_SECONDS / SILENT_SECONDS)
-TOLERANCE = 0.02  # m/s and rad/s: an error of a tenth of a speed is seen
+TOLERANCE = 0.02  # m/s and rad/s: small enough to detect a speed that is 10 % wrong
 
 RULE_FORWARD = "The way is clear: linear.x = 0.3, angular.z = 0."
 RULE_TURN = "Something is within 1 m in front: linear.x = 0, angular.z = 0.5."

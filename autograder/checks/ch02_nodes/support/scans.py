@@ -1,4 +1,4 @@
-"""Stimuli: laser scans made by hand, beam by beam."""
+"""Builds laser scans beam by beam."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from sensor_msgs.msg import LaserScan
 
-RANGE_MIN, RANGE_MAX = 0.12, 3.5  # m, as an LDS-01
+RANGE_MIN, RANGE_MAX = 0.12, 3.5  # m: the limits of an LDS-01 lidar
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Part:
     value: float
 
 
-# Just beyond range_min, which is near for whatever limit a robot has.
+# An obstacle just beyond range_min, and nearer than any limit that a robot may have.
 JUST_AHEAD = Part(-10.0, 10.0, 0.15)
 
 
@@ -32,14 +32,14 @@ def scan(
     last_bearing: float | None = None,
     limits: tuple[float, float] = (RANGE_MIN, RANGE_MAX),
 ) -> LaserScan:
-    """Return a scan that reads `fill` everywhere but in `parts`; a later part goes over an earlier one.
+    """Return a scan that reads `fill` everywhere except in `parts`; a later part replaces an earlier one.
 
     Args:
-        parts: what is different.
-        fill: metres.
-        beams: how many.
+        parts: the beams with other readings.
+        fill: the reading of all other beams, in metres.
+        beams: the number of beams.
         first_bearing: the bearing of beam 0 in degrees.
-        last_bearing: the bearing of the last beam; a full turn without a doubled beam when not given.
+        last_bearing: the bearing of the last beam; by default, the beams cover a full turn without a duplicate.
         limits: `range_min` and `range_max`, in metres.
     """
     last = first_bearing + 360.0 * (beams - 1) / beams if last_bearing is None else last_bearing

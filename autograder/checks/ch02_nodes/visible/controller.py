@@ -1,4 +1,4 @@
-"""What the student's robot controller does with a few scans, and how it ends."""
+"""Checks of the student's robot controller: its reactions to a few scans, and how it ends."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_qos(robot: Robot) -> None:
 @hint(contract.RULE_STOP, "Start with last_scan = None, and let None mean stop.")
 def test_waits(fresh_robot: Robot) -> None:
     """It stands still until the first scan has come."""
-    expect_stop(fresh_robot.left_alone(1.0), "Before the first scan")
+    expect_stop(fresh_robot.leave_alone(1.0), "Before the first scan")
 
 
 @check(points=1, covers="clear", needs=("starts",), after=("topics",))
@@ -79,8 +79,8 @@ def test_turns(robot: Robot) -> None:
 def test_other_lidar(robot: Robot) -> None:
     """With a lidar of 480 beams from -120° to 120° it turns for a wall ahead, and not for one at its left."""
     for first, expect_reaction in ((-8.0, expect_turn), (70.0, expect_forward)):
-        seen = scan(Part(first, first + 16.0, 0.7), beams=480, first_bearing=-120.0, last_bearing=120.0)
-        expect_reaction(robot.see(seen), f"With a wall 0.7 m away, from {first:.0f}° to {first + 16.0:.0f}°")
+        message = scan(Part(first, first + 16.0, 0.7), beams=480, first_bearing=-120.0, last_bearing=120.0)
+        expect_reaction(robot.see(message), f"With a wall 0.7 m away, from {first:.0f}° to {first + 16.0:.0f}°")
 
 
 @check(points=1, covers="plus-inf", needs=("starts",), after=("drives",), doc=contract.REP_117)
@@ -125,18 +125,18 @@ def test_phantom(robot: Robot) -> None:
 def test_dead_lidar(robot: Robot) -> None:
     """It stands still one second after the last scan."""
     robot.see(scan(fill=2.0))
-    began = robot.seconds
-    robot.left_alone(2.0)
-    expect_stop(robot.messages("/cmd_vel", since=began + 1.0), "A second after the last scan")
+    start = robot.seconds
+    robot.leave_alone(2.0)
+    expect_stop(robot.messages("/cmd_vel", since=start + 1.0), "A second after the last scan")
 
 
 @check(points=1, covers="cmd-vel", needs=("starts",), after=("topics",))
 @hint("create_timer(0.1, self.control_loop) calls control_loop ten times a second.")
 def test_rate(robot: Robot) -> None:
     """It publishes ten commands a second."""
-    began = robot.seconds
+    start = robot.seconds
     robot.see(scan(), 2.0)
-    rate = robot.rate("/cmd_vel", since=began)
+    rate = robot.rate("/cmd_vel", since=start)
     expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second.")
 
 
@@ -149,13 +149,13 @@ def test_warns(robot: Robot) -> None:
     robot.see(scan(Part(-15.0, 15.0, 0.7)), BLOCKED_SECONDS)
     robot.wait_for(lambda: robot.output.count("[WARN]") - before >= MIN_WARNINGS, WRITTEN_SECONDS)
     warnings = robot.output.count("[WARN]") - before
-    said = f"In front of a wall for {BLOCKED_SECONDS:.0f} s it warned {warnings} times."
-    expect(MIN_WARNINGS <= warnings <= 2 * MIN_WARNINGS, said)
+    message = f"In front of a wall for {BLOCKED_SECONDS:.0f} s it warned {warnings} times."
+    expect(MIN_WARNINGS <= warnings <= 2 * MIN_WARNINGS, message)
 
 
 @check(points=1, covers="ends", needs=("starts",), after=("topics",))
 @hint(*HINTS)
 def test_ends(workspace: Workspace) -> None:
     """Ctrl-C and SIGTERM end it with exit status 0."""
-    for number in (signal.SIGINT, signal.SIGTERM):
-        expect_clean_end(workspace, number)
+    for stop_signal in (signal.SIGINT, signal.SIGTERM):
+        expect_clean_end(workspace, stop_signal)

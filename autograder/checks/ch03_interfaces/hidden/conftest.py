@@ -1,4 +1,4 @@
-"""Fixtures of the hidden checks: nodes that are started in another way than most."""
+"""Fixtures of the hidden checks: nodes with other parameters or other clocks."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types
 
-ODD_PERIOD = 0.7  # s; most statuses come between two whole seconds
-FAST, SLOW = 4.0, 0.02  # s that a machine's clocks count in 1 s of ROS time
+ODD_PERIOD = 0.7  # s, so that most statuses come between two whole seconds
+FAST, SLOW = 4.0, 0.02  # s that the machine's clocks count in 1 s of ROS time
 
 
 @pytest.fixture(scope="session")
 def tuned_name(seed: int) -> str:
-    """The name that the tuned status publisher is given."""
+    """The robot name of the tuned status publisher."""
     return f"Rover{random.Random(f'{seed}:name').randrange(100, 1000)}"
 
 
 @pytest.fixture(scope="session")
 def shared_tuned_reporter(workspace: Workspace, types: Types, tuned_name: str) -> Iterator[Shared[Reporter]]:
-    """Keeps the status publisher that is given other parameters."""
+    """The status publisher with other parameters, which several checks share."""
     arguments = (
         "--ros-args",
         *parameters.override_arguments({"status_period": TUNED_PERIOD, "robot_name": tuned_name}),
@@ -37,7 +37,7 @@ def shared_tuned_reporter(workspace: Workspace, types: Types, tuned_name: str) -
 
 @pytest.fixture
 def tuned_reporter(shared_tuned_reporter: Shared[Reporter]) -> Reporter:
-    """The status publisher with a name and a period that it is given."""
+    """The status publisher with another name and another period."""
     return shared_tuned_reporter.get()
 
 
@@ -51,7 +51,7 @@ def hasty_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
 
 @pytest.fixture
 def tardy_driver(workspace: Workspace, types: Types) -> Iterator[Driver]:
-    """A distance driver on a machine whose clocks are slower than ROS time; it has heard where it is."""
+    """A distance driver that has received its pose, on a machine whose clocks are slower than ROS time."""
     with Driver(workspace, types, clock_rate=SLOW) as driver:
         driver.place(0.0, 0.0, 0.7)
         yield driver

@@ -1,16 +1,16 @@
-"""What the three definitions say: names, types and order first, then constants, defaults and bounds."""
+"""Checks of the three definitions: first names, types and order, then constants, defaults and bounds."""
 
 from __future__ import annotations
 
 from autograder.checking import CheckFailed, Workspace, group, hint
 from autograder.checking.probes import interfaces
 from autograder.checks.ch03_interfaces.support import contract
-from autograder.checks.ch03_interfaces.support.reading import expect_like, read
+from autograder.checks.ch03_interfaces.support.reading import expect_definition, read_definition
 
 check = group("definitions")
-AFTER = ("readable",)
+READABLE_CHECK = ("readable",)
 FIELDS = (interfaces.Aspect.FIELDS, interfaces.Aspect.TYPES)
-TABLES = (
+TABLE_HINTS = (
     "Compare your file with the exercise's table, line by line: name, type, order.",
     "`ros2 interface show` shows what ROS has understood; show your own and read it aloud.",
 )
@@ -21,8 +21,8 @@ TABLES = (
 @hint("`colcon build` names the line that it cannot read.")
 def test_readable(workspace: Workspace) -> None:
     """The three definitions are in my_robot_interfaces, and ROS can read them."""
-    for wanted in contract.DEFINITIONS:
-        read(workspace, wanted)
+    for definition in contract.DEFINITIONS:
+        read_definition(workspace, definition)
 
 
 @check(
@@ -36,13 +36,13 @@ def test_readable(workspace: Workspace) -> None:
         "status-charging",
         "status-joints",
     ),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.DEFINE,
 )
-@hint(*TABLES)
+@hint(*TABLE_HINTS)
 def test_robot_status(workspace: Workspace) -> None:
     """msg/RobotStatus.msg has the contract's fields, with their types, in their order."""
-    expect_like(workspace, contract.ROBOT_STATUS, *FIELDS)
+    expect_definition(workspace, contract.ROBOT_STATUS, *FIELDS)
 
 
 @check(
@@ -56,13 +56,13 @@ def test_robot_status(workspace: Workspace) -> None:
         "trip-at-end",
         "trip-reason-field",
     ),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
-@hint(*TABLES)
+@hint(*TABLE_HINTS)
 def test_check_trip(workspace: Workspace) -> None:
     """srv/CheckTrip.srv has the contract's fields in request and response, with their types, in their order."""
-    expect_like(workspace, contract.CHECK_TRIP, *FIELDS)
+    expect_definition(workspace, contract.CHECK_TRIP, *FIELDS)
 
 
 @check(
@@ -76,16 +76,21 @@ def test_check_trip(workspace: Workspace) -> None:
         "result-reason",
         "feedback-fields",
     ),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
-@hint(*TABLES)
+@hint(*TABLE_HINTS)
 def test_drive_distance(workspace: Workspace) -> None:
     """action/DriveDistance.action has the contract's fields in goal, result and feedback, with types, in order."""
-    expect_like(workspace, contract.DRIVE_DISTANCE, *FIELDS)
+    expect_definition(workspace, contract.DRIVE_DISTANCE, *FIELDS)
 
 
-@check(points=1, covers=("battery-unknown", "metres-per-percent", "goal-constants"), after=AFTER, doc=contract.LANGUAGE)
+@check(
+    points=1,
+    covers=("battery-unknown", "metres-per-percent", "goal-constants"),
+    after=READABLE_CHECK,
+    doc=contract.LANGUAGE,
+)
 @hint("A constant is written `type NAME = value`, with an equals sign and in capitals; it is never sent.")
 def test_constants(workspace: Workspace) -> None:
     """The four constants of the definitions have the contract's names, types and values."""
@@ -95,7 +100,7 @@ def test_constants(workspace: Workspace) -> None:
 @check(
     points=1,
     covers=("status-level", "trip-reserve", "trip-at-end", "goal-speed"),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
 @hint("A default stands behind the field's name, without an equals sign: `int32 reserve 20`.")
@@ -107,7 +112,7 @@ def test_defaults(workspace: Workspace) -> None:
 @check(
     points=1,
     covers=("trip-legs", "trip-reason-field", "result-reason", "status-joints"),
-    after=AFTER,
+    after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
 @hint("`float64[<=8] legs` holds at most eight, `float64[8] legs` exactly eight; `string<=80` at most 80 characters.")
@@ -117,14 +122,15 @@ def test_bounds(workspace: Workspace) -> None:
 
 
 def _expect_all(workspace: Workspace, aspect: interfaces.Aspect, count: int) -> None:
-    """Fail the check unless every definition is right in one aspect, which `count` elements have."""
+    """Fail the check unless every definition is right in one aspect; `count` elements of the contract have it."""
     wrong = []
-    for wanted in contract.DEFINITIONS:
+    for definition in contract.DEFINITIONS:
         try:
-            found = read(workspace, wanted)
-        except CheckFailed as unreadable:  # it has none of them; the others count
-            wrong += [unreadable.message] * sum(1 for _ in interfaces.elements(wanted, aspect))
+            student_definition = read_definition(workspace, definition)
+        except CheckFailed as error:  # such a definition has no right element; the other definitions count
+            wrong += [error.message] * sum(1 for _ in interfaces.elements(definition, aspect))
         else:
-            wrong += [found.sentence for found in interfaces.compare(wanted, found) if found.aspect is aspect]
+            differences = interfaces.compare(definition, student_definition)
+            wrong += [difference.sentence for difference in differences if difference.aspect is aspect]
     if wrong:
         raise CheckFailed(" ".join([*dict.fromkeys(wrong)][:3]), fraction=round(max(0.0, 1.0 - len(wrong) / count), 2))

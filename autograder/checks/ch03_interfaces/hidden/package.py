@@ -1,4 +1,4 @@
-"""The interface package: its manifest, and what the build made of it."""
+"""Checks of the interface package: its manifest and its build."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
 
 check = group("package", doc=contract.DEFINE)
+# The packages that definitions use, each with a definition that uses it.
 USES = {"std_msgs": "RobotStatus", "action_msgs": "DriveDistance"}
 HINTS = (
     "Compare it with the package.xml of chapter_interfaces in this chapter.",
@@ -22,8 +23,8 @@ HINTS = (
 def test_manifest(workspace: Workspace) -> None:
     """package.xml says that the package is built by CMake and what the generators and the users need."""
     packages, _ = find_packages(workspace.root / "src")
-    found = manifest.read(packages.get(INTERFACES, workspace.root / "src" / INTERFACES))
-    wrong = packaging.wrong_for_interfaces(found, USES)
+    package_manifest = manifest.read(packages.get(INTERFACES, workspace.root / "src" / INTERFACES))
+    wrong = packaging.wrong_for_interfaces(package_manifest, USES)
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 7), 2))
 
 
@@ -41,26 +42,28 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
 @hint("rosidl_generate_interfaces(${PROJECT_NAME} …) names every definition, with its folder.")
 def test_generated(workspace: Workspace) -> None:
     """The build generates Python classes from all three definitions."""
-    installation = installed.look(workspace.install, INTERFACES)
+    installation = installed.inspect_package(workspace.install, INTERFACES)
     absent = []
-    for wanted in contract.DEFINITIONS:
-        kind, name = wanted.path.split(".")[0].split("/")
-        if f"{INTERFACES}.{kind}._{_snake(name)}" not in installation.modules:
-            absent.append(wanted.path)
+    for definition in contract.DEFINITIONS:
+        kind, name = definition.path.split(".")[0].split("/")
+        if f"{INTERFACES}.{kind}._{_module_name(name)}" not in installation.modules:
+            absent.append(definition.path)
     if absent:
-        copied = [path for path in absent if path in installation.shared]
-        why = (
-            "the text was installed, but nothing was generated from it" if copied else "CMakeLists.txt does not name it"
+        copied_paths = [path for path in absent if path in installation.shared]
+        reason = (
+            "the text was installed, but nothing was generated from it"
+            if copied_paths
+            else "CMakeLists.txt does not name it"
         )
         fraction = round(1.0 - len(absent) / len(contract.DEFINITIONS), 2)
-        raise CheckFailed(f"There is no class for {', '.join(absent)}: {why}.", fraction=fraction)
+        raise CheckFailed(f"There is no class for {', '.join(absent)}: {reason}.", fraction=fraction)
 
 
 @check(points=1, covers="interfaces-manifest", needs=("builds",))
 @hint("ament_package() is the last line of CMakeLists.txt, after everything that it has to know.")
 def test_indexed(workspace: Workspace) -> None:
     """The ament index knows the package, so that ros2 and other packages find it."""
-    installation = installed.look(workspace.install, INTERFACES)
+    installation = installed.inspect_package(workspace.install, INTERFACES)
     expect(
         installation.marker,
         "share/ament_index has no my_robot_interfaces: CMakeLists.txt does not call ament_package().",
@@ -68,8 +71,8 @@ def test_indexed(workspace: Workspace) -> None:
     expect("package.xml" in installation.shared, "package.xml was not installed, which ament_package() does.")
 
 
-def _snake(name: str) -> str:
+def _module_name(name: str) -> str:
     """Return the module of a type as rosidl names it, such as robot_status for RobotStatus."""
     return "".join(
-        f"_{letter.lower()}" if letter.isupper() and at else letter.lower() for at, letter in enumerate(name)
+        f"_{letter.lower()}" if letter.isupper() and index else letter.lower() for index, letter in enumerate(name)
     )

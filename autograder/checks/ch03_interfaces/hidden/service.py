@@ -1,23 +1,39 @@
-"""The service check_trip: what it makes of the battery, the legs and the reserve."""
+"""Checks of the service check_trip: its answers for a battery, legs and a reserve."""
 
 from __future__ import annotations
 
+import math
 import random
-from typing import Any
+from dataclasses import replace
+
+from hypothesis import strategies as st
 
 from autograder.checking import LOCKSTEP, REAL, expect, group, hint
-from autograder.checks.ch03_interfaces.hidden.trips import draw_bad_legs, draw_reserves, draw_too_far, draw_trips
+from autograder.checking.drawn_cases import expect_each
+from autograder.checks.ch03_interfaces.hidden.trips import (
+    INVALID_PERCENTAGES,
+    Trip,
+    answers,
+    any_trips,
+    long_legs,
+    reserves,
+    short_trips,
+    wrong_legs,
+)
 from autograder.checks.ch03_interfaces.support import contract
-from autograder.checks.ch03_interfaces.support.contract import MAX_REASON, METRES_PER_PERCENT, UNKNOWN
+from autograder.checks.ch03_interfaces.support.contract import MAX_REASON, METRES_PER_PERCENT, RESERVE, UNKNOWN
 from autograder.checks.ch03_interfaces.support.reporter import PERIOD, SERVICE, Reporter
 
 check = group("service", doc=contract.SERVICE)
-MIN_REASON = 3  # characters: less gives no reason
-ANSWERS = ("trip_answers",)
-LEAST = 50  # percent, from which trips are judged by the level that the status shows
-CASE = 0.8  # of the points for a case in which the reason alone is missing
-SEEN_SECONDS = 5.0  # of real time until a service is seen in the graph
-HEARD = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}  # s for a battery to be heard; in lockstep, long before the next status
+MIN_REASON = 3  # characters: a shorter text is not a reason
+SERVICE_CHECK = ("trip_answers",)
+MIN_SHOWN_LEVEL = 50  # percent: from this level on, trips are tested with the level that the status shows
+REASON_FRACTION = 0.8  # of the points, if only the reason is missing
+DISCOVERY_SECONDS = 5.0  # s of real time until a service is in the graph
+# s to deliver a message; in lockstep, long before the next status.
+DELIVERY_SECONDS = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}
+WITH_ZERO = Trip(80, (12.5, 0.0, 30.0, 0.3), excess=0.4)  # a leg may be 0 m long
+PLAIN_TRIPS = Trip(50, (5.0,), RESERVE), Trip(50, (500.0,), RESERVE)  # possible, and not possible
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
 
 
@@ -26,124 +42,160 @@ RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and poss
 @hint("check_trip(self, request, response) returns the response.")
 def test_trip_answers(reporter: Reporter) -> None:
     """It serves check_trip as my_robot_interfaces/srv/CheckTrip, and answers."""
-    there: dict[str, list[str]] = {}
+    services: dict[str, list[str]] = {}
 
     def is_served() -> bool:
-        there.update(reporter.node.get_service_names_and_types())
-        return SERVICE in there
+        services.update(reporter.node.get_service_names_and_types())
+        return SERVICE in services
 
-    reporter.wait_for(is_served, SEEN_SECONDS)
-    own = sorted(name for name, kinds in there.items() if kinds[0].startswith(f"{contract.INTERFACES}/"))
+    reporter.wait_for(is_served, DISCOVERY_SECONDS)
+    names = sorted(name for name, kinds in services.items() if kinds[0].startswith(f"{contract.INTERFACES}/"))
     expect(
-        SERVICE in there, f"There is no service {SERVICE}; the node serves {', '.join(own) or 'nothing of its own'}."
+        SERVICE in services,
+        f"There is no service {SERVICE}; the node serves {', '.join(names) or 'nothing of its own'}.",
     )
-    wanted = f"{contract.INTERFACES}/srv/CheckTrip"
-    expect(there[SERVICE] == [wanted], f"{SERVICE} has the type {', '.join(there[SERVICE])}, it should be {wanted}.")
+    expected = f"{contract.INTERFACES}/srv/CheckTrip"
+    expect(
+        services[SERVICE] == [expected],
+        f"{SERVICE} has the type {', '.join(services[SERVICE])}, it should be {expected}.",
+    )
     reporter.ask([])
 
 
-@check(points=2, covers=("trip-unknown", "trip-reason", "newest"), needs=ANSWERS, after=("status_unknown",))
+@check(points=2, covers=("trip-unknown", "trip-reason", "newest"), needs=SERVICE_CHECK, after=("status_unknown",))
 @hint("An unknown battery makes no trip possible; start with possible = False.")
-def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter) -> None:
+def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter, draw: random.Random) -> None:
     """While the battery is unknown no trip is possible, and battery_at_end is -1."""
-    _expect(silent_reporter.ask([10.0], 0), UNKNOWN, "With an unknown battery")
+    _expect_answer(silent_reporter, Trip(UNKNOWN, (10.0,)), "With an unknown battery")
     reporter.set_battery(60)
-    reporter.publish_battery(1.5)  # which is no level
-    reporter.run(HEARD[reporter.time])
-    situation = f"{HEARD[reporter.time]:.1f} s after the percentage went from 0.6 to 1.5, which is unknown"
-    _expect(reporter.ask([10.0], 0), UNKNOWN, situation, fraction=0.75)
+
+    def judge(percentage: float) -> None:
+        reporter.publish_battery(percentage)
+        reporter.run(DELIVERY_SECONDS[reporter.time])
+        situation = f"Since the percentage is {percentage:.7g}, which is not from 0 to 1"
+        _expect_answer(reporter, Trip(UNKNOWN, (10.0,)), situation, fraction=0.75)
+
+    expect_each(INVALID_PERCENTAGES, judge, draw, count=_case_count(reporter, 4))
 
 
-@check(points=2, covers="trip-rule", needs=ANSWERS, after=("status_battery",))
+@check(points=2, covers="trip-rule", needs=SERVICE_CHECK, after=("status_battery",))
 @hint(RULE)
 def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
     """battery_at_end is what the legs leave of the battery, rounded down."""
-    for trip in draw_trips(draw):
-        level = _charge(reporter, trip.level, trip.over)
-        said, left = reporter.ask(trip.legs, 0).battery_at_end, trip.left(level)
-        situation = f"At {level} % and {len(trip.legs)} legs of {sum(trip.legs):.1f} m in all"
-        expect(said == left, f"{situation}, battery_at_end is {said}, not {left}.")
+
+    def judge(trip: Trip) -> None:
+        level = _charge(reporter, trip.level, trip.excess)
+        trip = replace(trip, level=level)
+        actual = reporter.ask(trip.legs, 0).battery_at_end
+        expected = {at_end for _, at_end in answers(level, trip.legs, 0)}
+        message = f"{_sentence(trip)}, battery_at_end is {actual}, not {' or '.join(map(str, expected))}."
+        expect(actual in expected, message)
+
+    judge(WITH_ZERO)
+    expect_each(short_trips(), judge, draw, count=_case_count(reporter, 12))
 
 
-@check(points=2, covers=("trip-rule", "trip-enough"), needs=ANSWERS, after=("trip_level",))
+@check(points=2, covers=("trip-rule", "trip-enough"), needs=SERVICE_CHECK, after=("trip_level",))
 @hint(RULE, "Exactly the reserve left is enough: at least means >=.")
 def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
     """A trip is possible when at least the reserve is left, and not when less is."""
-    for drawn in draw_reserves(draw):
-        level = _charge(reporter, drawn.level)
-        for legs in drawn.trips:
-            left = reporter.ask(legs, drawn.reserve).battery_at_end  # whether that is right, `trip_level` asks
-            expect(left > 0, f"At {level} %, legs of {sum(legs):.1f} m are said to leave {left} %.")
-            for reserve in (left, left + 1, drawn.reserve):
-                answer = reporter.ask(legs, reserve)
-                says = "possible" if answer.possible else "not possible"
-                situation = f"At {level} %, with {left} % left, of which {reserve} % is the reserve"
-                expect(answer.possible is (left >= reserve), f"{situation}, the trip is said to be {says}.")
-        answer = reporter.ask([level * METRES_PER_PERCENT], 0)
-        said = f"With a reserve of 0, a trip that takes all {level} % is said to be not possible."
-        expect(answer.possible, said, fraction=0.75)
+    level = _charge(reporter, draw.randint(60, 100))
+
+    def judge(drawn: tuple[tuple[float, ...], int]) -> None:
+        legs, more = drawn
+        at_end = reporter.ask(legs, 0).battery_at_end  # `trip_level` tests whether this is right
+        reserve = at_end + more
+        answer = reporter.ask(legs, reserve)
+        situation = f"At {level} %, with {at_end} % left, of which {reserve} % is the reserve"
+        answer_text = "possible" if answer.possible else "not possible"
+        expect(answer.possible is (more <= 0), f"{situation}, the trip is said to be {answer_text}.")
+
+    expect_each(reserves(), judge, draw, count=_case_count(reporter, 14))
+    answer = reporter.ask([level * METRES_PER_PERCENT], 0)
+    message = f"With a reserve of 0, a trip that takes all {level} % is said to be not possible."
+    expect(answer.possible, message, fraction=0.75)
 
 
-@check(points=1, covers=("trip-far", "trip-reason"), needs=ANSWERS, after=("trip_level",))
+@check(points=1, covers=("trip-far", "trip-reason"), needs=SERVICE_CHECK, after=("trip_level",))
 @hint("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not.")
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
     """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
     level = _charge(reporter, draw.randrange(10, 40))
-    for reserve in (5, 0, -200):
-        far, little = draw_too_far(draw, level)
-        answer = reporter.ask(far, reserve)
-        _expect(answer, 0, f"After a trip far too long, with a reserve of {reserve} %")
-    _expect(
-        reporter.ask(little, 0),
-        0,
-        "After a trip that takes less than one percent more than there is, with a reserve of 0 %",
+    trips = st.builds(Trip, st.just(level), long_legs(level), st.sampled_from((0, 5, 20, -200)))
+    expect_each(
+        trips, lambda trip: _expect_answer(reporter, trip, _sentence(trip)), draw, count=_case_count(reporter, 12)
     )
     reporter.set_battery(0)
-    left = reporter.ask([], 0).battery_at_end
-    expect(left == 0, f"At 0 %, which is known, and without legs, battery_at_end is {left}, not 0.", fraction=0.5)
+    at_end = reporter.ask([], 0).battery_at_end
+    expect(at_end == 0, f"At 0 %, which is known, and without legs, battery_at_end is {at_end}, not 0.", fraction=0.5)
 
 
-@check(points=2, covers=("trip-unknown", "trip-reason"), needs=ANSWERS)
+@check(points=2, covers=("trip-unknown", "trip-reason"), needs=SERVICE_CHECK)
 @hint("A leg is a distance: at least 0, and finite. nan is not at least 0.")
 @hint("0.0 <= leg < math.inf holds for distances alone.")
 def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
     """With a leg that is negative, nan or infinite no trip is possible, and battery_at_end is -1."""
-    reporter.set_battery(draw.randrange(60, 101))
-    for bad, legs in draw_bad_legs(draw):
-        _expect(reporter.ask(legs, 0), UNKNOWN, f"With a leg of {bad:.1f} m")
+    level = draw.randrange(60, 101)
+    reporter.set_battery(level)
+    for leg in (-0.5, math.nan, math.inf):
+        trip = Trip(level, (5.0, leg))
+        _expect_answer(reporter, trip, _sentence(trip))
+    trips = st.builds(Trip, st.just(level), wrong_legs())
+    expect_each(
+        trips, lambda trip: _expect_answer(reporter, trip, _sentence(trip)), draw, count=_case_count(reporter, 12)
+    )
 
 
-@check(points=1, covers="trip-reason", needs=ANSWERS, after=("trip_possible",))
+@check(points=1, covers="trip-reason", needs=SERVICE_CHECK, after=("trip_possible",))
 @hint("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.")
-def test_trip_reason(reporter: Reporter) -> None:
+def test_trip_reason(reporter: Reporter, draw: random.Random) -> None:
     """The reason says why a trip is not possible, and is empty when it is."""
     reporter.set_battery(50)
-    good, bad = reporter.ask([5.0]), reporter.ask([500.0])
-    expect(good.reason == "", f"The trip is possible, and yet the reason is {good.reason!r}.")
-    expect(len(bad.reason.strip()) >= MIN_REASON, f"The trip is not possible, and the reason is {bad.reason!r}.")
-    for last in (-100.125, 100.125):  # a reason that lists all legs is longer than 80 characters
-        answer = reporter.ask([100.125] * 7 + [last])
-        fits = len(answer.reason.strip()) >= MIN_REASON and len(answer.reason) <= MAX_REASON
-        said = (
-            f"With eight legs, the reason has {len(answer.reason)} characters, instead of {MIN_REASON} to {MAX_REASON}."
-        )
-        expect(fits, said, fraction=0.5)
+    for trip in PLAIN_TRIPS:
+        _expect_reason(reporter, trip, fraction=0.0)
+    expect_each(any_trips(50), lambda trip: _expect_reason(reporter, trip, 0.5), draw, count=_case_count(reporter, 12))
 
 
-def _expect(answer: Any, left: int, situation: str, fraction: float = 0.0) -> None:
-    """Fail the check unless a trip is not possible and leaves so much; `fraction` is for what came before."""
-    found = answer.battery_at_end
+def _case_count(reporter: Reporter, count: int) -> int:
+    """Return how many drawn cases a check can afford: fewer in real time."""
+    return count if reporter.time == LOCKSTEP else 4
+
+
+def _sentence(trip: Trip) -> str:
+    """Return a trip in words, at the beginning of a sentence."""
+    return f"A{repr(trip)[1:]}"
+
+
+def _expect_reason(reporter: Reporter, trip: Trip, fraction: float) -> None:
+    """Fail the check unless the reason fits the rest of the answer for a trip; other checks test the rest."""
+    answer = reporter.ask(trip.legs, trip.reserve)
+    length = len(answer.reason.strip())
+    if answer.possible:
+        message = f"{_sentence(trip)}, the trip is possible, and yet the reason is {answer.reason!r}."
+        expect(answer.reason == "", message, fraction=fraction)
+    else:
+        message = f"{_sentence(trip)}, the trip is not possible, and the reason is {answer.reason!r}."
+        expect(length >= MIN_REASON, message, fraction=fraction)
+    message = f"{_sentence(trip)}, the reason has {len(answer.reason)} characters, instead of at most {MAX_REASON}."
+    expect(len(answer.reason) <= MAX_REASON, message, fraction=0.5)
+
+
+def _expect_answer(reporter: Reporter, trip: Trip, situation: str, fraction: float = 0.0) -> None:
+    """Fail the check unless the answer for a trip that is not possible is right."""
+    answer = reporter.ask(trip.legs, trip.reserve)
+    ((_, expected),) = answers(trip.level, trip.legs, trip.reserve)
     expect(not answer.possible, f"{situation}, the trip is said to be possible.", fraction=fraction)
-    expect(found == left, f"{situation}, battery_at_end is {found}, it should be {left}.", fraction=fraction)
-    said = f"{situation}, the reason is {answer.reason!r}."
-    expect(len(answer.reason.strip()) >= MIN_REASON, said, fraction=max(CASE, fraction))
+    message = f"{situation}, battery_at_end is {answer.battery_at_end}, it should be {expected}."
+    expect(answer.battery_at_end == expected, message, fraction=fraction)
+    message = f"{situation}, the reason is {answer.reason!r}."
+    expect(len(answer.reason.strip()) >= MIN_REASON, message, fraction=max(REASON_FRACTION, fraction))
 
 
-def _charge(reporter: Reporter, percent: int, over: float = 0.25) -> int:
-    """Charge the battery; return the level by which trips are judged, in percent.
+def _charge(reporter: Reporter, percent: int, excess: float = 0.25) -> int:
+    """Charge the battery; return the level with which trips are tested, in percent.
 
-    It is what the status shows, so that a level that is cut off costs no point here; where far less is shown, it is the
-    contract's.
+    This is the level that the status shows, so a level that is rounded down costs no points here. If the status shows
+    far less, `percent` is returned.
     """
-    shown = reporter.set_battery(percent, over)
-    return shown if min(percent, LEAST) <= shown <= 100 else percent
+    shown_level = reporter.set_battery(percent, excess)
+    return shown_level if min(percent, MIN_SHOWN_LEVEL) <= shown_level <= 100 else percent

@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 03_interfaces share."""
+"""Code that the visible and the hidden checks of 03_interfaces share."""

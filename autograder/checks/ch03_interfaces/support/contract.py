@@ -8,7 +8,7 @@ INTERFACES = "my_robot_interfaces"
 PACKAGE = "my_robot_package"
 STATUS = "status_publisher"
 DRIVER = "distance_driver"
-MAX_LEGS = 8  # of a trip
+MAX_LEGS = 8  # the largest number of legs in a trip
 
 ROBOT_STATUS = interfaces.Interface(
     "msg/RobotStatus.msg",
@@ -54,14 +54,14 @@ DRIVE_DISTANCE = interfaces.Interface(
 )
 DEFINITIONS = (ROBOT_STATUS, CHECK_TRIP, DRIVE_DISTANCE)
 
-UNKNOWN = -1  # percent
-RESERVE = 20  # percent
-METRES_PER_PERCENT = 5.0  # m
-MAX_DISTANCE = 5.0  # m
-MAX_SPEED = 0.5  # m/s
+UNKNOWN = -1  # percent: the level of a battery that is not known
+RESERVE = 20  # percent, by default
+METRES_PER_PERCENT = 5.0  # m that one percent of the charge lasts
+MAX_DISTANCE = 5.0  # m, of a goal
+MAX_SPEED = 0.5  # m/s, of a goal
 PERIOD = 0.1  # s between two commands
-MAX_REASON = 80  # characters that fit into a reason
-PATIENCE = 1.0  # s without progress until a goal is given up
+MAX_REASON = 80  # characters of a reason
+PATIENCE = 1.0  # s without progress until a goal is aborted
 
 DOCS = "https://docs.ros.org/en/jazzy/"
 DEFINE = f"{DOCS}Tutorials/Beginner-Client-Libraries/Custom-ROS2-Interfaces.html"

@@ -1,4 +1,4 @@
-"""The student's distance driver in the harness. The grader turns its wheels: they obey every command at once."""
+"""The student's distance driver in a harness. The grader simulates its robot, which follows every command at once."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from autograder.checks.ch03_interfaces.support.contract import DRIVER, PACKAGE, 
 from autograder.checks.ch03_interfaces.support.types import Types
 
 COMMANDS, ODOMETRY, ACTION = "/cmd_vel", "/odom", "/drive_distance"
-_RAISED = re.compile(r"Error raised in execute callback: (.{1,200})")  # of rclpy, in its log
-_NOT_ENDED = "Goal state not set"
-LOOK = 0.05  # s between two looks at the commands
-ANSWER_SECONDS = 10.0  # for a server to answer: no time at all in lockstep, generous where time is real
+_EXCEPTION_LINE = re.compile(r"Error raised in execute callback: (.{1,200})")  # as logged by rclpy
+_NOT_ENDED_TEXT = "Goal state not set"
+STEP = 0.05  # s: one step of the simulated robot
+ANSWER_SECONDS = 10.0  # s to wait for an answer; in lockstep, the server answers at once
 
 
 class Driver(AutoHarness):
-    """A harness in which goals are sent, and a robot rolls.
+    """A harness that sends goals and simulates the robot.
 
-    A program that rejects a goal although nothing stands against it, once it has been sent others, is started again:
-    what it kept of those is for another check.
+    A program that has been sent goals and then rejects a valid one is restarted: another check tests whether it
+    is ready for the next goal.
 
     Attributes:
-        x, y, heading: where the robot is, in m and rad.
-        height: of where it is, in m, which counts for no distance.
+        x, y, heading: the robot's pose, in m and rad.
+        height: the robot's height in m, which must not count as distance.
         stuck: whether the wheels are held.
-        deaf: whether the odometry is silent.
-        used: whether the program has been sent a goal.
+        is_silent: whether the odometry is silent.
+        has_goals: whether the program has been sent a goal.
     """
 
     def __init__(self, workspace: Workspace, types: Types, clock_rate: float = 1.0) -> None:
@@ -39,101 +39,101 @@ class Driver(AutoHarness):
         super().__init__(workspace, PACKAGE, DRIVER, publishes=publishes, subscribes=subscribes, clock_rate=clock_rate)
         self.types = types
         self.x, self.y, self.heading, self.height = 0.0, 0.0, 0.0, 0.0
-        self.stuck = self.deaf = self.used = False
-        self._began = 0  # how many commands had come when the last goal was sent
+        self.stuck = self.is_silent = self.has_goals = False
+        self._first_command = 0  # the number of commands before the last goal was sent
 
     def restart(self) -> None:
-        """Start the program anew, and let it hear where the robot is."""
-        stuck, deaf = self.stuck, self.deaf
+        """Restart the program, and publish the robot's pose."""
+        stuck, is_silent = self.stuck, self.is_silent
         self.__exit__(None, None, None)
         self.__enter__()
-        self.used = False
+        self.has_goals = False
         self.place(self.x, self.y, self.heading)
-        self.stuck, self.deaf = stuck, deaf
+        self.stuck, self.is_silent = stuck, is_silent
 
     def place(self, x: float, y: float, heading: float) -> None:
-        """Put the robot somewhere else, and let the driver hear of it."""
-        self.x, self.y, self.heading, self.stuck, self.deaf = x, y, heading, False, False
+        """Move the robot to a pose, and publish it."""
+        self.x, self.y, self.heading, self.stuck, self.is_silent = x, y, heading, False, False
         for _ in range(3):
             self._publish_odometry()
-            self.run(LOOK)
+            self.run(STEP)
 
     def shift(self, distance: float) -> None:
-        """Move the robot along its heading, which only the odometry tells."""
+        """Move the robot along its heading, without a command."""
         self.x += distance * math.cos(self.heading)
         self.y += distance * math.sin(self.heading)
 
     def send(self, distance: float, speed: float | None = None) -> Goal:
-        """Send a goal; fail the check if nobody answers."""
-        goal = self.types.drive_distance.Goal(distance=distance)
+        """Send a goal; fail the check if the server does not answer."""
+        request = self.types.drive_distance.Goal(distance=distance)
         if speed is not None:
-            goal.speed = speed
-        self._began = len(self.messages(COMMANDS))
-        sent: Goal = self.send_goal(self.types.drive_distance, ACTION, goal, ANSWER_SECONDS)
-        self.used = True
-        self.until(lambda: sent.accepted is not None, ANSWER_SECONDS)
-        expect(sent.accepted is not None, "The action server drive_distance did not answer a goal.")
-        return sent
+            request.speed = speed
+        self._first_command = len(self.messages(COMMANDS))
+        goal: Goal = self.send_goal(self.types.drive_distance, ACTION, request, ANSWER_SECONDS)
+        self.has_goals = True
+        self.until(lambda: goal.accepted is not None, ANSWER_SECONDS)
+        expect(goal.accepted is not None, "The action server drive_distance did not answer a goal.")
+        return goal
 
     def start(self, distance: float, speed: float | None = None) -> Goal:
-        """Send a goal that must be accepted, by a program that was started again if need be."""
-        used = self.used
-        sent = self.send(distance, speed)
-        if used and not sent.accepted:
+        """Send a goal that must be accepted, if necessary after a restart of the program."""
+        has_goals = self.has_goals
+        goal = self.send(distance, speed)
+        if has_goals and not goal.accepted:
             self.restart()
-            sent = self.send(distance, speed)
-        expect(sent.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")
-        return sent
+            goal = self.send(distance, speed)
+        expect(goal.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")
+        return goal
 
     def commands(self) -> list[ReceivedMessage]:
         """Return the commands that have come since the last goal was sent."""
-        return self.messages(COMMANDS)[self._began :]
+        return self.messages(COMMANDS)[self._first_command :]
 
-    def why_aborted(self) -> str:
-        """Return what rclpy has logged of an execute that did not end its goal, or ""."""
-        raised = _RAISED.findall(self.output)
-        if raised:
-            return f" execute raised an exception: {raised[-1]}."
-        return " execute returned without succeed(), canceled() or abort()." if _NOT_ENDED in self.output else ""
+    def abort_reason(self) -> str:
+        """Return why execute did not end its goal, according to rclpy's log, or an empty string."""
+        errors = _EXCEPTION_LINE.findall(self.output)
+        if errors:
+            return f" execute raised an exception: {errors[-1]}."
+        return " execute returned without succeed(), canceled() or abort()." if _NOT_ENDED_TEXT in self.output else ""
 
     def roll(self, goal: Goal, seconds: float, *, until: Any = None) -> list[Twist]:
-        """Let the wheels roll until the goal has ended, or a condition holds, at most so long; return the commands.
+        """Move the robot until the goal has ended, a condition holds or the time is up; return the commands.
 
-        Each command moves the robot for a tenth of a second, or for as long as the one before it lasted.
+        Each command moves the robot for a tenth of a second, or for the time since the previous one if that is less.
         """
-        before = seen = len(self.messages(COMMANDS))
-        end = self.seconds + seconds
-        while self.seconds < end and goal.result is None and not (until and until()):
-            self.run(LOOK)
-            seen = self._obey(seen)
+        first = applied_count = len(self.messages(COMMANDS))
+        deadline = self.seconds + seconds
+        while self.seconds < deadline and goal.result is None and not (until and until()):
+            self.run(STEP)
+            applied_count = self._apply_commands(applied_count)
             self._publish_odometry()
-        self.run(2 * LOOK)  # the last command may come with the result
-        self._obey(seen)
-        return [received.message for received in self.messages(COMMANDS)[before:]]
+        self.run(2 * STEP)  # the last command may come with the result
+        self._apply_commands(applied_count)
+        return [received.message for received in self.messages(COMMANDS)[first:]]
 
     def finish(self, goal: Goal, seconds: float, situation: str) -> list[Twist]:
-        """Let the wheels roll until the goal has ended; fail the check if it does not."""
+        """Move the robot until the goal has ended; fail the check if it does not end in time."""
         commands = self.roll(goal, seconds)
         expect(goal.result is not None, f"{situation}, the goal had not ended after {seconds:.0f} s.")
         return commands
 
     def abandon(self, goal: Goal) -> None:
-        """Get rid of a goal that is of no further use, by a cancel or, if need be, by holding the wheels."""
+        """End a goal that is no longer needed, by a cancel or, if that fails, by holding the wheels."""
         goal.cancel()
         self.stuck = True
         self.roll(goal, 5.0)
         self.stuck = False
 
-    def _obey(self, seen: int) -> int:
+    def _apply_commands(self, first: int) -> int:
         commands = self.messages(COMMANDS)
-        for number, received in enumerate(commands[seen:], seen):
+        for index, received in enumerate(commands[first:], first):
             if not self.stuck:
-                lasts = min(PERIOD, received.seconds - commands[number - 1].seconds) if number else PERIOD
-                self.shift(lasts * received.message.linear.x)
+                duration = min(PERIOD, received.seconds - commands[index - 1].seconds) if index else PERIOD
+                self.shift(duration * received.message.linear.x)
         return len(commands)
 
     def _publish_odometry(self) -> None:
-        if self.deaf:
+        if self.is_silent:
             return
         odometry = Odometry()
         odometry.header.frame_id, odometry.child_frame_id = "odom", "base_link"
@@ -145,12 +145,12 @@ class Driver(AutoHarness):
         self.publish(ODOMETRY, odometry)
 
 
-def stopped(commands: list[Twist]) -> bool:
+def has_stopped(commands: list[Twist]) -> bool:
     """Return whether the last command is a stop."""
     return bool(commands) and commands[-1].linear.x == 0.0 and commands[-1].angular.z == 0.0
 
 
-def is_left(distance: float, driven: float, remaining: float, slack: float) -> bool:
-    """Return whether `remaining` is what is left of a goal, all in m: beyond the goal, 0 or a number below it."""
-    left = distance - driven
-    return any(abs(remaining - right) <= slack for right in (left, max(0.0, left)))
+def is_remaining(distance: float, driven: float, remaining: float, slack: float) -> bool:
+    """Return whether `remaining` fits the other distances, all in m; beyond the goal, it may be 0 or negative."""
+    exact = distance - driven
+    return any(abs(remaining - expected) <= slack for expected in (exact, max(0.0, exact)))

@@ -1,4 +1,4 @@
-"""Whether a subscription hears a driver, which publishes as a plain 10 says and keeps nothing for late joiners."""
+"""Tests whether a subscription matches a driver that publishes with the default QoS profile, which is volatile."""
 
 from __future__ import annotations
 
@@ -8,8 +8,12 @@ from rclpy.qos import DurabilityPolicy
 from autograder.checking import expect
 
 
-def expect_heard(node: Node, topic: str) -> None:
-    """Fail the check if a subscription asks for messages that were kept; half of the points for what it does."""
+def expect_volatile(node: Node, topic: str) -> None:
+    """Fail the check, with half of the points, if a subscription to the topic is transient local."""
     for peer in node.get_subscriptions_info_by_topic(topic):
-        kept = peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
-        expect(not kept, f"{topic} is subscribed to with transient local durability: it hears no driver.", fraction=0.5)
+        is_transient = peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        expect(
+            not is_transient,
+            f"{topic} is subscribed to with transient local durability: it hears no driver.",
+            fraction=0.5,
+        )

@@ -6,37 +6,41 @@ from autograder.checking import CheckFailed, Workspace, expect, find_packages
 from autograder.checking.probes import interfaces
 from autograder.checks.ch03_interfaces.support.contract import INTERFACES
 
-STUB = "YOUR CODE HERE"  # what a released cell holds where the answer belongs
+STUB = "YOUR CODE HERE"  # marks the missing answer in a released cell
 
 
-def expect_like(workspace: Workspace, wanted: interfaces.Interface, *aspects: interfaces.Aspect) -> None:
-    """Fail the check unless a definition has what the contract says, in these aspects; points for what is right."""
-    differences = [found for found in interfaces.compare(wanted, read(workspace, wanted)) if found.aspect in aspects]
+def expect_definition(workspace: Workspace, expected: interfaces.Interface, *aspects: interfaces.Aspect) -> None:
+    """Fail the check unless a definition agrees with the contract in these aspects; parts that agree earn points."""
+    differences = [
+        difference
+        for difference in interfaces.compare(expected, read_definition(workspace, expected))
+        if difference.aspect in aspects
+    ]
     sentences = " ".join(difference.sentence for difference in differences[:3])
-    expect(not differences, sentences, fraction=_fraction(interfaces.share(wanted, differences)))
+    expect(not differences, sentences, fraction=_fraction(interfaces.share(expected, differences)))
 
 
-def read(workspace: Workspace, wanted: interfaces.Interface) -> interfaces.Interface:
-    """Return the student's definition of the contract's name; fail the check if there is none that can be read."""
+def read_definition(workspace: Workspace, expected: interfaces.Interface) -> interfaces.Interface:
+    """Return the student's version of a definition; fail the check if it is missing or cannot be read."""
     packages, _ = find_packages(workspace.root / "src")
     folder = packages.get(INTERFACES, workspace.root / "src" / INTERFACES)
-    path = folder / wanted.path
+    path = folder / expected.path
     if path.is_symlink() or not path.is_file():
-        present = [
+        present_paths = [
             f"{file.parent.name}/{file.name}" for file in sorted(folder.glob("*/*")) if file.parent.name != "src"
         ]
-        near = interfaces.closest(wanted.path, present)
-        raise CheckFailed(f"There is no {INTERFACES}/{wanted.path}" + (f", but a {near}." if near else "."))
+        similar = interfaces.closest(expected.path, present_paths)
+        raise CheckFailed(f"There is no {INTERFACES}/{expected.path}" + (f", but a {similar}." if similar else "."))
     try:
         text = path.read_bytes()[: interfaces.MAX_BYTES + 1].decode()
-        expect(STUB not in text, f"{wanted.path} is still to be written.")
-        return interfaces.parse(INTERFACES, wanted.path, text)
+        expect(STUB not in text, f"{expected.path} is still to be written.")
+        return interfaces.parse(INTERFACES, expected.path, text)
     except UnicodeDecodeError:
-        raise CheckFailed(f"{wanted.path} is not UTF-8 text.") from None
+        raise CheckFailed(f"{expected.path} is not UTF-8 text.") from None
     except interfaces.Unreadable as error:
         raise CheckFailed(str(error)) from None
 
 
-def _fraction(right: float) -> float:
-    """Half of the points at most for a definition that is not the contract's: other programs cannot use it."""
-    return round(right / 2, 2)
+def _fraction(share: float) -> float:
+    """Return at most half of the points: other programs cannot use a definition that differs from the contract."""
+    return round(share / 2, 2)

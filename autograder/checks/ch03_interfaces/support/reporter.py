@@ -1,4 +1,4 @@
-"""The student's status publisher in the harness, with the sensors that it sums up."""
+"""The student's status publisher in a harness that publishes the messages of its sensors."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from autograder.checks.ch03_interfaces.support.types import Types
 BATTERY, JOINTS, TOPIC, SERVICE = "/battery_state", "/joint_states", "/robot_status", "/check_trip"
 PUBLISHES = {BATTERY: BatteryState, JOINTS: JointState}
 PERIOD = 1.0  # s between two messages, unless the parameter says otherwise
-STALE_NS = 700_000_000  # how old what a sensor says is when it is said
-SLOW_SECONDS = 4.0  # more, for a status whose period is too long
-HEARD_SECONDS = 1.5  # until a battery that has spoken shows in the status; a status may be wrong, too
-ANSWER_SECONDS = 10.0  # for a service to answer: no time at all in lockstep, generous where time is real
+STAMP_AGE_NS = 700_000_000  # the age of a sensor message's stamp when it is published
+EXTRA_SECONDS = 4.0  # s of additional time for a status whose period is too long
+SHOWN_SECONDS = 1.5  # s to wait until the status shows a battery's level, which a wrong status never does
+ANSWER_SECONDS = 10.0  # s to wait for an answer; in lockstep, the service answers at once
 
 
 class Reporter(AutoHarness):
-    """A harness in which sensors speak, the status is read, and trips are asked about."""
+    """A harness that publishes sensor messages, reads the status and calls the service."""
 
     def __init__(
         self, workspace: Workspace, types: Types, arguments: tuple[str, ...] = (), clock_rate: float = 1.0
@@ -42,52 +42,52 @@ class Reporter(AutoHarness):
         self.types = types
 
     def publish_battery(self, percentage: float, *, status: int = BatteryState.POWER_SUPPLY_STATUS_DISCHARGING) -> None:
-        """Let the battery speak, from 0.0 to 1.0; the message is on its way until time goes on."""
+        """Publish a battery state, from 0.0 to 1.0; the message is delivered when time advances."""
         message = BatteryState(header=self._header(), percentage=percentage, power_supply_status=status)
         self.publish(BATTERY, message)
 
     def publish_joints(self, positions: Sequence[float]) -> None:
-        """Let the joints speak."""
+        """Publish a joint state with these positions."""
         names = [f"joint_{number}" for number in range(len(positions))]
         self.publish(JOINTS, JointState(header=self._header(), name=names, position=list(positions)))
 
     def _header(self) -> Header:
         """Return a header whose stamp is older than a status may be."""
-        return Header(stamp=Time(nanoseconds=self.now_ns - STALE_NS).to_msg())
+        return Header(stamp=Time(nanoseconds=self.now_ns - STAMP_AGE_NS).to_msg())
 
     def status(self) -> Any:
-        """Return the status that comes next; fail the check if none does."""
-        began = self.seconds
+        """Return the next status; fail the check if none comes."""
+        start = self.seconds
         self.run(PERIOD + 0.2)
-        self.until(lambda: bool(self.messages(TOPIC, since=began)), SLOW_SECONDS)  # another check asks for its period
-        heard = self.messages(TOPIC, since=began)
-        expect(bool(heard), f"No message came on robot_status for {PERIOD + SLOW_SECONDS:.0f} s.")
-        return heard[-1].message
+        self.until(lambda: bool(self.messages(TOPIC, since=start)), EXTRA_SECONDS)  # another check tests the period
+        statuses = self.messages(TOPIC, since=start)
+        expect(bool(statuses), f"No message came on robot_status for {PERIOD + EXTRA_SECONDS:.0f} s.")
+        return statuses[-1].message
 
-    def set_battery(self, percent: int, over: float = 0.25) -> int:
-        """Charge the battery to a level, `over` percent more; wait until the status shows that the program knows it.
+    def set_battery(self, percent: int, excess: float = 0.25) -> int:
+        """Publish a charge of `percent` plus `excess` percent, and wait until the status shows the level `percent`.
 
         Returns:
             The level that the status shows then, in percent; -1 if no status comes.
         """
-        began = self.seconds
-        self.publish_battery(min(1.0, (percent + over) / 100.0))
+        start = self.seconds
+        self.publish_battery(min(1.0, (percent + excess) / 100.0))
 
-        def shown() -> int:
-            heard = self.messages(TOPIC, since=began)
-            return int(heard[-1].message.battery_level) if heard else UNKNOWN
+        def shown_level() -> int:
+            statuses = self.messages(TOPIC, since=start)
+            return int(statuses[-1].message.battery_level) if statuses else UNKNOWN
 
-        self.until(lambda: shown() == percent, HEARD_SECONDS)
-        return shown()
+        self.until(lambda: shown_level() == percent, SHOWN_SECONDS)
+        return shown_level()
 
     def ask(self, legs: Sequence[float], reserve: int = RESERVE) -> Any:
-        """Ask about a trip; return the response, fail the check if none comes."""
+        """Call the service for a trip and return the response; fail the check if none comes."""
         request = self.types.check_trip.Request(legs=list(legs), reserve=reserve)
-        answer = self.call(self.types.check_trip, SERVICE, request, ANSWER_SECONDS)
-        expect(answer is not None, "check_trip did not answer.")
-        return answer
+        response = self.call(self.types.check_trip, SERVICE, request, ANSWER_SECONDS)
+        expect(response is not None, "check_trip did not answer.")
+        return response
 
 
-def same(one: float, other: float) -> bool:
-    """Return whether a number came through a float32, or nearly."""
-    return math.isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)
+def is_same_float32(a: float, b: float) -> bool:
+    """Return whether two numbers are equal up to the precision of float32."""
+    return math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-9)

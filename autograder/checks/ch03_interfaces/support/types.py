@@ -1,4 +1,4 @@
-"""The student's interfaces as classes of plain values, made of their texts."""
+"""The student's interfaces as classes of plain values, generated from their definitions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from autograder.checks.ch03_interfaces.support.contract import INTERFACES
 
 @dataclass(frozen=True)
 class Types:
-    """The three classes."""
+    """The classes of the message, the service and the action."""
 
     robot_status: Any
     check_trip: Any
@@ -24,5 +24,5 @@ def load_types(workspace: Workspace) -> Types:
     Raises:
         StudentError: a definition is missing or wrong.
     """
-    found = load_interfaces(workspace, INTERFACES)
-    return Types(found.msg.RobotStatus, found.srv.CheckTrip, found.action.DriveDistance)
+    interfaces = load_interfaces(workspace, INTERFACES)
+    return Types(interfaces.msg.RobotStatus, interfaces.srv.CheckTrip, interfaces.action.DriveDistance)

@@ -1,4 +1,4 @@
-"""What the definitions say, and whether colcon builds them."""
+"""Checks of the definitions and of their build."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from autograder.checking import OK, Diagnosis, StudentError, Workspace, group, hint
 from autograder.checking.probes import interfaces
 from autograder.checks.ch03_interfaces.support import contract
-from autograder.checks.ch03_interfaces.support.reading import expect_like
+from autograder.checks.ch03_interfaces.support.reading import expect_definition
 
 check = group("definitions")
-ALL = tuple(interfaces.Aspect)
-TABLES = (
+ASPECTS = tuple(interfaces.Aspect)
+TABLE_HINTS = (
     "Compare your file with the exercise's table, line by line.",
     "A field is `type name`, a default stands behind it, a constant is `type NAME = value`.",
 )
@@ -30,10 +30,10 @@ TABLES = (
     ),
     doc=contract.DEFINE,
 )
-@hint(*TABLES)
+@hint(*TABLE_HINTS)
 def test_robot_status(workspace: Workspace) -> None:
     """msg/RobotStatus.msg is as the table says."""
-    expect_like(workspace, contract.ROBOT_STATUS, *ALL)
+    expect_definition(workspace, contract.ROBOT_STATUS, *ASPECTS)
 
 
 @check(
@@ -49,10 +49,10 @@ def test_robot_status(workspace: Workspace) -> None:
     ),
     doc=contract.LANGUAGE,
 )
-@hint(*TABLES)
+@hint(*TABLE_HINTS)
 def test_check_trip(workspace: Workspace) -> None:
     """srv/CheckTrip.srv is as the table says."""
-    expect_like(workspace, contract.CHECK_TRIP, *ALL)
+    expect_definition(workspace, contract.CHECK_TRIP, *ASPECTS)
 
 
 @check(
@@ -68,10 +68,10 @@ def test_check_trip(workspace: Workspace) -> None:
     ),
     doc=contract.LANGUAGE,
 )
-@hint(*TABLES)
+@hint(*TABLE_HINTS)
 def test_drive_distance(workspace: Workspace) -> None:
     """action/DriveDistance.action is as the table says."""
-    expect_like(workspace, contract.DRIVE_DISTANCE, *ALL)
+    expect_definition(workspace, contract.DRIVE_DISTANCE, *ASPECTS)
 
 
 @check(points=1, covers="interfaces-manifest", doc=contract.DEFINE)

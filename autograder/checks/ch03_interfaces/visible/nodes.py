@@ -1,4 +1,4 @@
-"""What the two nodes do."""
+"""Checks of the two nodes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sensor_msgs.msg import BatteryState
 
 from autograder.checking import check, expect, hint
 from autograder.checks.ch03_interfaces.support import contract
-from autograder.checks.ch03_interfaces.support.driver import Driver, is_left, stopped
+from autograder.checks.ch03_interfaces.support.driver import Driver, has_stopped, is_remaining
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 
 STATUS, TRIP, DRIVE = (("builds", definition) for definition in ("robot_status", "check_trip", "drive_distance"))
@@ -64,11 +64,15 @@ def test_sensors(reporter: Reporter) -> None:
 def test_trip(reporter: Reporter) -> None:
     """At 40 %, legs of 50 m and 50 m leave 20 %, which is possible; 51 m instead leave 19 %, which is not."""
     reporter.set_battery(40)
-    for legs, left in (([50.0, 50.0], 20), ([50.0, 51.0], 19)):
+    for legs, expected in (([50.0, 50.0], 20), ([50.0, 51.0], 19)):
         answer = reporter.ask(legs)
-        expect(answer.battery_at_end == left, f"Legs of {legs} leave {answer.battery_at_end} %, instead of {left} %.")
         expect(
-            answer.possible is (left == 20), f"Legs of {legs} are said to be {'' if answer.possible else 'im'}possible."
+            answer.battery_at_end == expected,
+            f"Legs of {legs} leave {answer.battery_at_end} %, instead of {expected} %.",
+        )
+        expect(
+            answer.possible is (expected == 20),
+            f"Legs of {legs} are said to be {'' if answer.possible else 'im'}possible.",
         )
 
 
@@ -91,8 +95,8 @@ def test_negative_leg(reporter: Reporter) -> None:
     reporter.set_battery(60)
     answer = reporter.ask([10.0, -1.0])
     expect(not answer.possible, "With a leg of -1 m the trip is said to be possible.")
-    left = answer.battery_at_end
-    expect(left == contract.UNKNOWN, f"With a leg of -1 m battery_at_end is {left}, instead of {contract.UNKNOWN}.")
+    level = answer.battery_at_end
+    expect(level == contract.UNKNOWN, f"With a leg of -1 m battery_at_end is {level}, instead of {contract.UNKNOWN}.")
 
 
 @check(points=1, covers=("drives", "arrives", "driven"), group="action", needs=DRIVE, doc=contract.ACTION)
@@ -104,16 +108,16 @@ def test_drive(driver: Driver) -> None:
     driver.place(*start, 2.2)
     goal = driver.start(0.35, 0.5)
     commands = driver.finish(goal, 10.0, "With 0.35 m to drive")
-    expect(goal.status == GoalStatus.STATUS_SUCCEEDED, f"The goal did not succeed.{driver.why_aborted()}")
+    expect(goal.status == GoalStatus.STATUS_SUCCEEDED, f"The goal did not succeed.{driver.abort_reason()}")
     driven = math.dist(start, (driver.x, driver.y))
     expect(0.33 <= driven <= 0.55, f"The robot drove {driven:.2f} m.")
     expect(bool(goal.feedback), "There was no feedback on the way.")
-    told = goal.feedback[-1].message
-    adds_up = is_left(0.35, told.driven, told.remaining, 0.01)
-    expect(adds_up, f"A feedback said driven {told.driven:.2f} m and remaining {told.remaining:.2f} m.")
-    said = goal.result.driven
-    expect(abs(said - driven) <= 0.1, f"The result says {said:.2f} m, it was {driven:.2f} m.")
-    expect(stopped(commands), "After the goal had ended, the last command was no stop.")
+    feedback = goal.feedback[-1].message
+    adds_up = is_remaining(0.35, feedback.driven, feedback.remaining, 0.01)
+    expect(adds_up, f"A feedback said driven {feedback.driven:.2f} m and remaining {feedback.remaining:.2f} m.")
+    reported = goal.result.driven
+    expect(abs(reported - driven) <= 0.1, f"The result says {reported:.2f} m, it was {driven:.2f} m.")
+    expect(has_stopped(commands), "After the goal had ended, the last command was no stop.")
 
 
 @check(points=1, covers="cancels", group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
@@ -126,7 +130,7 @@ def test_cancel(driver: Driver) -> None:
     goal.cancel()
     commands = driver.finish(goal, 5.0, "After a cancel")
     expect(goal.status == GoalStatus.STATUS_CANCELED, "After a cancel the goal did not end CANCELED.")
-    expect(stopped(commands), "After the cancel, the last command was no stop.")
+    expect(has_stopped(commands), "After the cancel, the last command was no stop.")
 
 
 @check(points=1, covers=("rejects", "busy"), group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
@@ -144,10 +148,10 @@ def test_reject(driver: Driver) -> None:
     driver.roll(first, 0.3)
     second = driver.send(0.4, 0.25)
     driver.roll(first, 0.3)
-    goes_on = first.result is None
+    is_running = first.result is None
     driver.abandon(first)
     expect(not second.accepted, "While a goal was driven, another one was accepted.")
-    expect(goes_on, "The first goal ended when another one came.")
+    expect(is_running, "The first goal ended when another one came.")
 
 
 @check(points=1, covers="stuck", group="action", needs=DRIVE, after=("drive",), doc=contract.ACTION)
@@ -159,5 +163,5 @@ def test_stuck(driver: Driver) -> None:
     commands = driver.finish(goal, 6.0, "With a robot that is held")
     driver.stuck = False
     expect(goal.status == GoalStatus.STATUS_ABORTED, "The goal of a robot that is held did not end ABORTED.")
-    expect(stopped(commands), "After the goal had been given up, the last command was no stop.")
+    expect(has_stopped(commands), "After the goal had been given up, the last command was no stop.")
     expect(bool(goal.result.reason.strip()), "The result gives no reason.")

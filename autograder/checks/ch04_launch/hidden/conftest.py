@@ -1,4 +1,4 @@
-"""Fixtures of the suite: launches that several checks look at, and numbers drawn from the seed."""
+"""Fixtures of the hidden checks: launches that several checks share, and inputs drawn from the seed."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from autograder.checks.ch04_launch.hidden.launches import Launches
 
 @pytest.fixture(scope="session")
 def inputs(seed: int) -> Inputs:
-    """The hidden inputs of this run."""
+    """The hidden inputs of this grading."""
     return draw_inputs(random.Random(f"{seed}:launch"))
 
 
 @pytest.fixture(scope="module")
 def launches(workspace: Workspace, inputs: Inputs) -> Iterator[Launches]:
-    """Launches of one module's checks: each is started when it is first asked for."""
+    """The launches of one module's checks; each is started when a check first uses it."""
     launches = Launches(workspace, inputs)
     yield launches
     launches.close()

@@ -1,4 +1,4 @@
-"""Two robots from one file: namespaces, an include, one shared topic."""
+"""Checks of two_robots.launch.py: namespaces, an include and a shared topic."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from autograder.checks.ch04_launch.support.contract import (
     REPORTER,
     SECOND,
     SHARED,
-    in_spaces,
+    nodes_in_namespaces,
 )
-from autograder.checks.ch04_launch.support.status import HEAR_SECONDS
+from autograder.checks.ch04_launch.support.status import REPORT_SECONDS
 
 check = group("fleet")
-MATCH_SECONDS = 5.0  # real time for a node's topics to be seen, once the node is
-GROUPED = "GroupAction([PushRosNamespace(name), SetRemap(...), IncludeLaunchDescription(...)]), once a robot."
+MATCH_SECONDS = 5.0  # s of real time from a node's discovery to that of its topics
+GROUP_HINT = "GroupAction([PushRosNamespace(name), SetRemap(...), IncludeLaunchDescription(...)]), once a robot."
 
 
 @check(points=3, covers=("first", "second", "included"), doc=contract.LARGE)
-@hint("What is pushed in a GroupAction holds to its end; without a group it holds for all that follows.", GROUPED)
+@hint("What is pushed in a GroupAction holds to its end; without a group it holds for all that follows.", GROUP_HINT)
 def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts driver and reporter in /robot1 and in /robot2, and nothing else."""
-    launch_probe.expect_nodes(launches.fleet(), in_spaces(FIRST, SECOND))
+    launch_probe.expect_nodes(launches.fleet(), nodes_in_namespaces(FIRST, SECOND))
 
 
 @check(points=2, covers="included", after=("two_robots",), doc=contract.LARGE)
@@ -40,14 +40,14 @@ def test_two_robots(launches: Launches) -> None:
 @hint("robot_name and speed are handed on; report keeps the default that robot.launch.py declares.")
 def test_includes(launches: Launches) -> None:
     """It includes robot.launch.py, so that what is changed there is changed for both robots."""
-    wanted = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
-    nodes = launch_probe.settle(launches.renamed_fleet(), wanted)
-    included = [name for name in nodes if name.endswith("/wheels")]  # whether the namespaces are right, others ask
-    said = (
+    expected = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
+    nodes = launch_probe.settle(launches.renamed_fleet(), expected)
+    wheel_nodes = [name for name in nodes if name.endswith("/wheels")]  # other checks test the namespaces
+    message = (
         "The checks put a robot.launch.py with one node, wheels, and report:=false beside your file; it started "
-        f"{', '.join(nodes) or 'nothing'} instead of {' and '.join(wanted)}."
+        f"{', '.join(nodes) or 'nothing'} instead of {' and '.join(expected)}."
     )
-    expect(len(included) == len(nodes) == 2, said, fraction=0.5 if nodes and included == nodes else 0.0)
+    expect(len(wheel_nodes) == len(nodes) == 2, message, fraction=0.5 if nodes and wheel_nodes == nodes else 0.0)
 
 
 @check(points=1, covers=("first", "second", "fleet-speed", "fleet-described"), doc=contract.SUBSTITUTIONS)
@@ -55,18 +55,17 @@ def test_includes(launches: Launches) -> None:
 @hint("DeclareLaunchArgument('first', default_value='robot1', description='...')")
 def test_fleet_arguments(launches: Launches) -> None:
     """two_robots.launch.py declares first, second and speed, each with its default and a description."""
-    arguments = launch_probe.shown_arguments(
-        launches.fleet_workspace(), PACKAGE, FLEET
-    )  # those of what it includes, too
+    # These include the arguments that the included file declares.
+    arguments = launch_probe.declared_arguments(launches.fleet_workspace(), PACKAGE, FLEET)
     for name, default in (("first", FIRST), ("second", SECOND), ("speed", str(contract.SPEED))):
         launch_probe.expect_argument(arguments, name, default)
 
 
 @check(points=2, covers=("first", "second"), after=("two_robots",), doc=contract.SUBSTITUTIONS)
-@hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUPED)
+@hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUP_HINT)
 def test_spaces(launches: Launches, inputs: Inputs) -> None:
     """First and second name the two namespaces."""
-    launch_probe.expect_nodes(_renamed(launches, inputs), in_spaces(*inputs.names))
+    launch_probe.expect_nodes(_drawn_fleet(launches, inputs), nodes_in_namespaces(*inputs.names))
 
 
 @check(points=2, covers=("first", "second"), after=("spaces",), doc=contract.LARGE)
@@ -74,13 +73,17 @@ def test_spaces(launches: Launches, inputs: Inputs) -> None:
 @hint("A robot's robot_name is its own namespace's name.")
 def test_robot_names(launches: Launches, inputs: Inputs) -> None:
     """Each robot reports under its own name."""
-    harness = _renamed(launches, inputs)
-    reporters = _both(harness, inputs.names, REPORTER)
-    named = {node: (harness.parameters(node, ["robot_name"]) or {}).get("robot_name") for node in reporters}
-    own = {f"/{name}{REPORTER}": name for name in inputs.names}
-    right = named == own if named.keys() == own.keys() else sorted(map(str, named.values())) == sorted(inputs.names)
-    said = "; ".join(f"{node} has robot_name = {name!r}" for node, name in named.items())
-    expect(right, f"With first:={inputs.names[0]} and second:={inputs.names[1]}, {said}.")
+    harness = _drawn_fleet(launches, inputs)
+    reporters = _both_nodes(harness, inputs.names, REPORTER)
+    actual = {node: (harness.parameters(node, ["robot_name"]) or {}).get("robot_name") for node in reporters}
+    expected = {f"/{name}{REPORTER}": name for name in inputs.names}
+    is_right = (
+        actual == expected
+        if actual.keys() == expected.keys()
+        else sorted(map(str, actual.values())) == sorted(inputs.names)
+    )
+    message = "; ".join(f"{node} has robot_name = {name!r}" for node, name in actual.items())
+    expect(is_right, f"With first:={inputs.names[0]} and second:={inputs.names[1]}, {message}.")
 
 
 @check(points=2, covers="fleet-speed", after=("spaces",), doc=contract.LARGE)
@@ -88,15 +91,17 @@ def test_robot_names(launches: Launches, inputs: Inputs) -> None:
 @hint("launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()")
 def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches both drivers."""
-    harness = _renamed(launches, inputs)
-    for node in _both(harness, inputs.names, DRIVER):
+    harness = _drawn_fleet(launches, inputs)
+    for node in _both_nodes(harness, inputs.names, DRIVER):
         launch_probe.expect_parameters(harness, node, {"speed": inputs.speed})
-    own = launches.own_fleet()
-    for node in (f"/{FIRST}{DRIVER}", f"/{SECOND}{DRIVER}") if _starts(own, FIRST, SECOND) else ():
-        found = _speed(own, node)
-        if not parameters.same(found, inputs.speed) and parameters.same(_speed(launches.alone(), DRIVER), inputs.speed):
-            said = f"With your robot.launch.py and speed:={inputs.speed}, {node} has speed = {found!r}"
-            raise CheckFailed(f"{said}; alone, in no namespace, it has {inputs.speed!r}.", fraction=0.5)
+    own_fleet = launches.own_fleet()
+    for node in (f"/{FIRST}{DRIVER}", f"/{SECOND}{DRIVER}") if _starts_robots(own_fleet, FIRST, SECOND) else ():
+        speed = _speed(own_fleet, node)
+        if not parameters.same(speed, inputs.speed) and parameters.same(
+            _speed(launches.lone_robot(), DRIVER), inputs.speed
+        ):
+            message = f"With your robot.launch.py and speed:={inputs.speed}, {node} has speed = {speed!r}"
+            raise CheckFailed(f"{message}; alone, in no namespace, it has {inputs.speed!r}.", fraction=0.5)
 
 
 @check(points=3, covers="fleet-status", after=("two_robots",), doc=contract.LARGE)
@@ -106,19 +111,22 @@ def test_status(launches: Launches, inputs: Inputs) -> None:
     """Both robots report on /fleet/status."""
     for names, harness, fraction in (
         ((FIRST, SECOND), launches.fleet(), 0.0),
-        (inputs.names, _renamed(launches, inputs), 0.8),
+        (inputs.names, _drawn_fleet(launches, inputs), 0.8),
     ):
-        wanted = _both(harness, names, REPORTER)
-        harness.wait_for(partial(_publish, harness, wanted), MATCH_SECONDS)
+        expected = _both_nodes(harness, names, REPORTER)
+        harness.wait_for(partial(_are_publishers, harness, expected), MATCH_SECONDS)
         topics = (SHARED, *(f"/{name}/status" for name in names), "/status")
-        on = {topic: harness.publishers(topic) for topic in topics}
-        seen = "; ".join(f"{topic}: {', '.join(others)}" for topic, others in on.items() if others)
-        share = len(set(wanted) & set(on[SHARED])) / 2
-        said = f"The robots are called {' and '.join(names)}, and reports are published on {seen or 'no topic'}."
-        expect(on[SHARED] == wanted, said, fraction=max(fraction, min(share, 0.5)))
-        heard = harness.wait_for(partial(_is_heard, harness), HEAR_SECONDS)
-        said = f"On {SHARED}, nothing was heard within {HEAR_SECONDS:.0f} s."
-        expect(heard, said, fraction=max(fraction, 0.5))
+        publishers = {topic: harness.publishers(topic) for topic in topics}
+        publishers_text = "; ".join(f"{topic}: {', '.join(others)}" for topic, others in publishers.items() if others)
+        share = len(set(expected) & set(publishers[SHARED])) / 2
+        message = (
+            f"The robots are called {' and '.join(names)}, and reports are published on "
+            f"{publishers_text or 'no topic'}."
+        )
+        expect(publishers[SHARED] == expected, message, fraction=max(fraction, min(share, 0.5)))
+        has_messages = harness.wait_for(partial(_has_messages, harness), REPORT_SECONDS)
+        message = f"On {SHARED}, nothing was heard within {REPORT_SECONDS:.0f} s."
+        expect(has_messages, message, fraction=max(fraction, 0.5))
 
 
 @check(points=2, covers="fleet-status", after=("two_robots", "spaces"), doc=contract.LARGE)
@@ -126,44 +134,44 @@ def test_status(launches: Launches, inputs: Inputs) -> None:
 @hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
 def test_own_commands(launches: Launches, inputs: Inputs) -> None:
     """Each robot has a cmd_vel of its own, from its driver to its reporter."""
-    looked = 0
-    for harness, names, where in (
+    checked_count = 0
+    for harness, names, prefix in (
         (launches.fleet(), (FIRST, SECOND), ""),
-        (_renamed(launches, inputs), inputs.names, "With other names of the robots, "),
+        (_drawn_fleet(launches, inputs), inputs.names, "With other names of the robots, "),
         (launches.own_fleet(), (FIRST, SECOND), "With your robot.launch.py, "),
     ):
-        for name in names if _starts(harness, *names) else ():
-            _expect_own_commands(harness, name, where, fraction=0.75 if looked else 0.0)
-            looked += name == names[-1]
-    expect(looked > 0, "Two robots, each with driver and reporter in its namespace, were not started.")
+        for name in names if _starts_robots(harness, *names) else ():
+            _expect_own_commands(harness, name, prefix, fraction=0.75 if checked_count else 0.0)
+            checked_count += name == names[-1]
+    expect(checked_count > 0, "Two robots, each with driver and reporter in its namespace, were not started.")
 
 
 @check(points=1, covers="fleet-ctrl-c", after=("two_robots",))
 @hint("What Node(...) starts, the launch ends.")
 def test_fleet_stop(launches: Launches) -> None:
     """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""
-    launch_probe.settle(launches.fleet(), in_spaces(FIRST, SECOND))
-    running = launches.fleet().programs()
-    expect(bool(running), f"No node is up. {launch_probe.failure(launches.fleet().output)}".strip())
+    launch_probe.settle(launches.fleet(), nodes_in_namespaces(FIRST, SECOND))
+    programs = launches.fleet().programs()
+    expect(bool(programs), f"No node is up. {launch_probe.failure(launches.fleet().output)}".strip())
     launch_probe.expect_clean_stop(launches.fleet())
 
 
-def _expect_own_commands(harness: LaunchHarness, name: str, where: str, fraction: float = 0.0) -> None:
-    """Fail the check unless a robot's driver alone commands its reporter alone."""
-    wanted = [f"/{name}/driver"], [f"/{name}/reporter"]
-    seen = harness.wait_for(lambda: _ends(harness, name) == wanted, MATCH_SECONDS)
-    way = " to ".join(", ".join(end) or "nobody" for end in _ends(harness, name))
-    expect(seen, f"{where}/{name}/cmd_vel goes from {way}.", fraction=fraction)
+def _expect_own_commands(harness: LaunchHarness, name: str, prefix: str, fraction: float = 0.0) -> None:
+    """Fail the check unless only a robot's driver publishes on its cmd_vel, and only its reporter subscribes."""
+    expected = [f"/{name}/driver"], [f"/{name}/reporter"]
+    is_right = harness.wait_for(lambda: _endpoints(harness, name) == expected, MATCH_SECONDS)
+    endpoints = " to ".join(", ".join(names) or "nobody" for names in _endpoints(harness, name))
+    expect(is_right, f"{prefix}/{name}/cmd_vel goes from {endpoints}.", fraction=fraction)
 
 
-def _ends(harness: LaunchHarness, name: str) -> tuple[list[str], list[str]]:
+def _endpoints(harness: LaunchHarness, name: str) -> tuple[list[str], list[str]]:
     return harness.publishers(f"/{name}/cmd_vel"), harness.subscribers(f"/{name}/cmd_vel")
 
 
-def _starts(harness: LaunchHarness, *names: str) -> bool:
-    """Return whether a launch starts these robots and nothing else; if it does not, other checks say so."""
+def _starts_robots(harness: LaunchHarness, *names: str) -> bool:
+    """Return whether a launch starts these robots and nothing else; other checks report a launch that does not."""
     with suppress(StudentError):
-        return launch_probe.settle(harness, in_spaces(*names)) == in_spaces(*names)
+        return launch_probe.settle(harness, nodes_in_namespaces(*names)) == nodes_in_namespaces(*names)
     return False
 
 
@@ -171,27 +179,27 @@ def _speed(harness: LaunchHarness, node: str) -> parameters.Value | None:
     return (harness.parameters(node, ["speed"]) or {}).get("speed")
 
 
-def _both(harness: LaunchHarness, names: tuple[str, str], which: str) -> list[str]:
-    """Return the names of both drivers or both reporters, in whichever namespace; fail the check if there is one alone.
+def _both_nodes(harness: LaunchHarness, names: tuple[str, str], suffix: str) -> list[str]:
+    """Return the names of both drivers or both reporters, in any namespace; fail the check unless there are two.
 
-    Whether the namespaces are right is for other checks.
+    Other checks test the namespaces.
     """
-    nodes = launch_probe.settle(harness, in_spaces(*names))
-    found = sorted(name for name in nodes if name.endswith(which))
-    said = f"The graph holds {', '.join(nodes) or 'no node'}, and not two that are called {which[1:]}."
-    expect(len(found) == 2, f"{said} {launch_probe.failure(harness.output)}".strip())
-    return found
+    nodes = launch_probe.settle(harness, nodes_in_namespaces(*names))
+    matching_nodes = sorted(name for name in nodes if name.endswith(suffix))
+    message = f"The graph holds {', '.join(nodes) or 'no node'}, and not two that are called {suffix[1:]}."
+    expect(len(matching_nodes) == 2, f"{message} {launch_probe.failure(harness.output)}".strip())
+    return matching_nodes
 
 
-def _publish(harness: LaunchHarness, nodes: list[str]) -> bool:
-    """Return whether these nodes alone publish on the topic that the robots share."""
+def _are_publishers(harness: LaunchHarness, nodes: list[str]) -> bool:
+    """Return whether exactly these nodes publish on the topic that the robots share."""
     return harness.publishers(SHARED) == nodes
 
 
-def _is_heard(harness: LaunchHarness) -> bool:
+def _has_messages(harness: LaunchHarness) -> bool:
     return bool(harness.messages(SHARED))
 
 
-def _renamed(launches: Launches, inputs: Inputs) -> LaunchHarness:
+def _drawn_fleet(launches: Launches, inputs: Inputs) -> LaunchHarness:
     first, second = inputs.names
     return launches.fleet(first=first, second=second, speed=inputs.speed)

@@ -1,4 +1,4 @@
-"""The two robot.launch.py that the checks write for two_robots.launch.py to include."""
+"""The two versions of robot.launch.py that the checks write for two_robots.launch.py to include."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def generate_launch_description():
     """
     Declare robot_name, speed and report; start driver and reporter with config/robot.yaml.
 
-    robot_name: the reporter's parameter robot_name, always text; default robot1.
+    robot_name: the reporter's parameter robot_name, always a string; default robot1.
     speed: the driver's parameter speed, always a float, in m/s; default 0.2.
     report: whether the reporter starts, true or false; default true.
     """
@@ -55,7 +55,7 @@ def generate_launch_description():
 '''
 
 WITH_ONE_NODE = '''
-"""A robot.launch.py with one node of another name and another default: only who includes this file starts it."""
+"""A robot.launch.py with one node of another name: only a launch that includes this file starts it."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
@@ -65,7 +65,7 @@ from launch_ros.actions import Node
 
 
 def generate_launch_description():
-    """Start the driver as wheels, where report has the default of this file."""
+    """Start the driver as wheels if report has the default of this file."""
     return LaunchDescription([
         DeclareLaunchArgument('report', default_value='false'),
         Node(

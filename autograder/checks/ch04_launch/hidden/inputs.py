@@ -1,4 +1,4 @@
-"""Hidden inputs: what is written into the parameters file, and which arguments are included."""
+"""Hidden inputs: the values in the parameters file, and the arguments of the launches."""
 
 from __future__ import annotations
 
@@ -11,18 +11,19 @@ NAMES = ("alba", "bruno", "cleo", "dora", "emil", "fritz", "gina", "hugo")
 
 @dataclass(frozen=True)
 class Inputs:
-    """Drawn once a run.
+    """The inputs of one grading.
 
     Attributes:
-        file: values by name for the parameters file.
-        speed: of a robot, m/s, with a fraction.
-        whole_speed: of a robot, m/s, written without a point.
+        file: the values in the parameters file, by name.
+        speed: a robot's speed in m/s, with a fraction.
+        whole_speed: a robot's speed in m/s, without a decimal point.
         number_name: a robot's name that looks like a number.
-        quoted_name: a robot's name in which quotation marks of both kinds stand.
-        names: of two robots.
-        enough: a battery that is good enough, in percent, with a fraction.
-        whole_battery: another one, written without a point.
-        empty: one that is not.
+        quoted_name: a robot's name with quotation marks of both kinds, and other characters special to YAML or Python.
+        names: the names of two robots.
+        enough: a battery level that passes the self-test, in percent, with a fraction.
+        whole_battery: another level that passes it, without a decimal point.
+        empty: a battery level that fails the self-test.
+        refused: texts for the argument report that are neither true nor false, though some conditions accept them.
     """
 
     file: dict[str, float]
@@ -34,10 +35,11 @@ class Inputs:
     enough: float
     whole_battery: int
     empty: float
+    refused: tuple[str, ...]
 
 
 def draw_inputs(draw: random.Random) -> Inputs:
-    """Draw the inputs of one run."""
+    """Draw the inputs of one grading."""
     first, second = draw.sample(NAMES, 2)
     return Inputs(
         file={
@@ -47,22 +49,24 @@ def draw_inputs(draw: random.Random) -> Inputs:
         },
         speed=round(draw.uniform(0.21, 0.45), 3),
         whole_speed=draw.randint(1, 3),
-        number_name=str(draw.randint(10, 99)),
-        quoted_name=f"""{first}'s "R{draw.randint(2, 9)}" robot""",
+        # Not 1e3 or 08: launch_ros writes them without quotation marks, and rcl reads them as numbers.
+        number_name=draw.choice(("{}", "{}.50")).format(draw.randint(10, 99)),
+        quoted_name=rf"""{first}'s "R{draw.randint(2, 9)}": robot #{draw.randint(2, 9)}, [a] {{b}} \n""",
         names=(first, second),
         enough=draw.randint(21, 98) + 0.5,
         whole_battery=draw.randint(21, 98),
         empty=draw.randint(1, 18) + 0.5,
+        refused=("maybe", draw.choice(("1", "0")), draw.choice(("True", "TRUE", "False"))),
     )
 
 
 def with_sim_time(text: str) -> str:
-    """Return a parameters file that sets one parameter more for driver and reporter, which every node has."""
+    """Return a parameters file that also sets use_sim_time, which every node has, for driver and reporter."""
     return re.sub(r"(?m)^([ \t]+)(?=(?:turn_rate|report_period):)", r"\1use_sim_time: true\n\1", text)
 
 
 def with_values(text: str, values: dict[str, float]) -> str:
-    """Return a parameters file with other numbers in it; what it does not have is not added."""
+    """Return a parameters file with other numbers; parameters that it does not contain are not added."""
     for name, value in values.items():
         text = re.sub(rf"(?m)^([ \t]+{name}:[ \t]*)[-+.\deE]+", rf"\g<1>{value}", text)
     return text

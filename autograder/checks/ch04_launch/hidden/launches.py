@@ -1,4 +1,4 @@
-"""Launches, and what they declare, that several checks look at."""
+"""Launches and their declared arguments, which several checks share."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from std_msgs.msg import String
 from autograder.checking import LaunchHarness, Workspace
 from autograder.checking.probes import launch_arguments, launch_probe, short_lived
 from autograder.checks.ch04_launch.hidden import included
-from autograder.checks.ch04_launch.hidden.given import given_parameters, given_programs
+from autograder.checks.ch04_launch.hidden.given_package import given_parameters, given_programs
 from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_sim_time, with_values
 from autograder.checks.ch04_launch.support.contract import (
     CONFIG,
@@ -24,30 +24,35 @@ from autograder.checks.ch04_launch.support.contract import (
     SPEED,
 )
 
-# launch shows standard error in any case, and standard output where it is told to.
+# launch always shows standard error. It shows standard output only with output='screen'.
 ON_STDOUT = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_LOGGING_BUFFERED_STREAM": "0"}
-ON_STDERR = {**ON_STDOUT, "RCUTILS_LOGGING_USE_STDOUT": "0"}  # as nodes log by themselves
-# Self-tests that end otherwise than with the exit status 0 or 1.
-UNUSUAL = {"by a signal": "#!/bin/sh\nkill -KILL $$\n", "with exit status 3": "#!/bin/sh\nexit 3\n"}
-# Stand-ins for all three: the self-test takes a while, the reporter ends again and again, the driver when it is told.
+ON_STDERR = {**ON_STDOUT, "RCUTILS_LOGGING_USE_STDOUT": "0"}  # where nodes log by default
+# Self-tests that end with neither exit status 0 nor 1.
+UNUSUAL_SELF_TESTS = {"by a signal": "#!/bin/sh\nkill -KILL $$\n", "with exit status 3": "#!/bin/sh\nexit 3\n"}
+# Stand-ins for the three programs: the self-test takes 3 s, the reporter ends every 0.1 s, the driver ends on SIGTERM.
 SCRIPTS = {
-    "self_test": "#!/bin/sh\nsleep 3\nexit 0\n",  # no exec: the system shows by its name that it runs
+    "self_test": "#!/bin/sh\nsleep 3\nexit 0\n",  # without exec, so that the process keeps the name self_test
     "reporter": "#!/bin/sh\nexec sleep 0.1\n",
     "driver": "#!/bin/sh\ntrap 'exit 3' TERM\nwhile sleep 0.2; do :; done\n",
 }
-STILL = {"driver": "#!/bin/sh\nexec sleep 600\n"}  # for a check of the reporter: it saves the start of a node
-PROGRAMS = {"scripts": SCRIPTS, "still": STILL, **{ending: {"self_test": text} for ending, text in UNUSUAL.items()}}
-# Of two_robots.launch.py, given to it: whether it has them by itself is asked once.
+# For a check of the reporter alone; a script starts faster than a node.
+STILL = {"driver": "#!/bin/sh\nexec sleep 600\n"}
+PROGRAMS = {
+    "scripts": SCRIPTS,
+    "still": STILL,
+    **{ending: {"self_test": text} for ending, text in UNUSUAL_SELF_TESTS.items()},
+}
+# Arguments for two_robots.launch.py. Only one check tests whether they are its defaults.
 DEFAULTS = {"first": FIRST, "second": SECOND, "speed": SPEED}
-INCLUDED = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
+INCLUDED_FILES = {"like": included.LIKE_THE_REFERENCE, "wheels": included.WITH_ONE_NODE}
 
 
 class Launches:
-    """Starts each launch once, when it is first asked for, and ends all at the end.
+    """Starts each launch once, when a check first uses it, and ends all of them in `close`.
 
-    Each starts the programs as they were given, and reads the parameters file as it was given but for its numbers.
-    One robot is launched with other numbers and one parameter more in its parameters file. Two robots include a
-    robot.launch.py of the grader's own, so that a mistake in the student's counts once; `own_fleet` includes that one.
+    Every launch starts the given programs, and reads the given parameters file with other numbers. For one robot, the
+    file also sets another parameter. Launches of two robots include a robot.launch.py of the grader, so that a mistake
+    in the student's file counts once. Only `own_fleet` includes the student's file.
     """
 
     def __init__(self, workspace: Workspace, inputs: Inputs) -> None:
@@ -55,23 +60,23 @@ class Launches:
         self._stack = ExitStack()
         self._harnesses: dict[str, LaunchHarness] = {}
         self._copies: dict[str, Workspace] = {}
-        self._early: set[LaunchHarness] = set()
+        self._early_launches: set[LaunchHarness] = set()
         self._arguments: dict[str, dict[str, launch_arguments.Argument]] = {}
 
     def robot(self, **arguments: object) -> LaunchHarness:
-        """Return robot.launch.py as it runs with these arguments; with `report`, its nodes log on standard error."""
+        """Return a launch of robot.launch.py with these arguments; with `report`, its nodes log on standard error."""
         return self._harness(ROBOT, arguments, {}, environment=ON_STDERR if "report" in arguments else ON_STDOUT)
 
-    def quoted(self) -> LaunchHarness:
-        """Return robot.launch.py as it runs with quotation marks in the robot's name, above a driver that sleeps."""
+    def quoted_robot(self) -> LaunchHarness:
+        """Return a launch of robot.launch.py with quotation marks in the robot's name and a driver that sleeps."""
         return self._harness(ROBOT, {"robot_name": self._inputs.quoted_name}, {}, programs="still")
 
     def robot_arguments(self) -> dict[str, launch_arguments.Argument]:
-        """Return the arguments that the student's robot.launch.py declares; raises as `shown_arguments` does."""
-        return self._shown(ROBOT)
+        """Return the arguments that the student's robot.launch.py declares; raises as `declared_arguments` does."""
+        return self._declared_arguments(ROBOT)
 
     def fleet(self, **arguments: object) -> LaunchHarness:
-        """Return two_robots.launch.py as it runs with these arguments."""
+        """Return a launch of two_robots.launch.py with these arguments."""
         return self._harness(FLEET, arguments, {SHARED: String}, robot="like")
 
     def fleet_workspace(self) -> Workspace:
@@ -79,44 +84,46 @@ class Launches:
         return self._copy(FLEET, "like")
 
     def renamed_fleet(self) -> LaunchHarness:
-        """Return two_robots.launch.py, above a robot.launch.py whose one node is called wheels."""
+        """Return a launch of two_robots.launch.py with a robot.launch.py whose only node is called wheels."""
         return self._harness(FLEET, DEFAULTS, {}, robot="wheels")
 
     def own_fleet(self) -> LaunchHarness:
-        """Return two_robots.launch.py with a speed, above the student's robot.launch.py."""
+        """Return a launch of two_robots.launch.py with a speed and the student's robot.launch.py."""
         return self._harness(FLEET, {**DEFAULTS, "speed": self._inputs.speed}, {})
 
-    def alone(self) -> LaunchHarness:
-        """Return the student's robot.launch.py, with the speed and the files of `own_fleet`."""
-        return self._harness(ROBOT, {"speed": self._inputs.speed}, {}, beside=FLEET)
+    def lone_robot(self) -> LaunchHarness:
+        """Return a launch of the student's robot.launch.py with the speed and the files of `own_fleet`."""
+        return self._harness(ROBOT, {"speed": self._inputs.speed}, {}, files_of=FLEET)
 
     def safe(self, **arguments: object) -> LaunchHarness:
-        """Return safe_start.launch.py as it runs with these arguments."""
-        return self._harness(SAFE, arguments, {}, finishes="self_test")
+        """Return a launch of safe_start.launch.py with these arguments."""
+        return self._harness(SAFE, arguments, {}, short_lived_program="self_test")
 
-    def unusual(self, ending: str) -> LaunchHarness:
-        """Return safe_start.launch.py above a self-test of `UNUSUAL`; its battery is given, and good enough."""
+    def unusual_start(self, ending: str) -> LaunchHarness:
+        """Return a launch of safe_start.launch.py with one of `UNUSUAL_SELF_TESTS` and a sufficient battery level."""
         return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs=ending)
 
-    def scripted(self) -> LaunchHarness:
-        """Return safe_start.launch.py above `SCRIPTS`."""
-        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs="scripts", finishes="self_test")
+    def scripted_start(self) -> LaunchHarness:
+        """Return a launch of safe_start.launch.py with the programs `SCRIPTS`."""
+        return self._harness(
+            SAFE, {"battery": self._inputs.enough}, {}, programs="scripts", short_lived_program="self_test"
+        )
 
     def is_early(self, harness: LaunchHarness) -> bool:
-        """Return whether in a launch of `safe` or `scripted` the driver ran beside the self-test."""
-        return harness in self._early
+        """Return whether the driver ran during the self-test, in a launch of `safe` or `scripted_start`."""
+        return harness in self._early_launches
 
     def safe_arguments(self) -> dict[str, launch_arguments.Argument]:
-        """Return the arguments that safe_start.launch.py declares; raises as `shown_arguments` does."""
-        return self._shown(SAFE)
+        """Return the arguments that safe_start.launch.py declares; raises as `declared_arguments` does."""
+        return self._declared_arguments(SAFE)
 
     def close(self) -> None:
-        """End what still runs."""
+        """End all launches."""
         self._stack.close()
 
-    def _shown(self, file: str) -> dict[str, launch_arguments.Argument]:
+    def _declared_arguments(self, file: str) -> dict[str, launch_arguments.Argument]:
         if file not in self._arguments:
-            self._arguments[file] = launch_probe.shown_arguments(self._workspace, PACKAGE, file)
+            self._arguments[file] = launch_probe.declared_arguments(self._workspace, PACKAGE, file)
         return self._arguments[file]
 
     def _harness(
@@ -127,33 +134,33 @@ class Launches:
         robot: str | None = None,
         programs: str | None = None,
         environment: Mapping[str, str] = ON_STDOUT,
-        finishes: str = "",
-        beside: str = "",
+        short_lived_program: str = "",
+        files_of: str = "",
     ) -> LaunchHarness:
-        """Return a running launch; if its program `finishes` hangs, a second launch of the same.
+        """Return a running launch; if its program `short_lived_program` hangs, return another launch like it.
 
-        It has the files of the launch file `beside`, or its own if there is none.
+        The launch uses the files that were prepared for the launch file `files_of`, by default for its own.
         """
-        key = f"{file} {robot} {programs} {sorted(arguments.items())} {beside}"
+        key = f"{file} {robot} {programs} {sorted(arguments.items())} {files_of}"
         if key not in self._harnesses:
-            words = {name: str(value) for name, value in arguments.items()}
-            copy = self._copy(beside or file, robot, programs)
-            harness = LaunchHarness(copy, PACKAGE, file, words, subscribes=subscribes, environment=environment)
+            argument_texts = {name: str(value) for name, value in arguments.items()}
+            copy = self._copy(files_of or file, robot, programs)
+            harness = LaunchHarness(copy, PACKAGE, file, argument_texts, subscribes=subscribes, environment=environment)
             self._harnesses[key] = self._stack.enter_context(harness)
-            if finishes and short_lived.run_together(harness, finishes, "driver"):
-                self._early.add(harness)
-            if finishes and short_lived.hangs(harness, finishes):
+            if short_lived_program and short_lived.ran_together(harness, short_lived_program, "driver"):
+                self._early_launches.add(harness)
+            if short_lived_program and short_lived.hangs(harness, short_lived_program):
                 self._harnesses[key] = self._stack.enter_context(harness.another())
         return self._harnesses[key]
 
     def _copy(self, file: str, robot: str | None, programs: str | None = None) -> Workspace:
         name = robot or (programs or file).partition(".")[0].replace(" ", "_")
         if name not in self._copies:
-            files = {} if robot is None else {f"launch/{ROBOT}": INCLUDED[robot]}
+            files = {} if robot is None else {f"launch/{ROBOT}": INCLUDED_FILES[robot]}
             config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
             if config.is_file():
                 text = with_values(given_parameters(), self._inputs.file)
                 files[CONFIG] = with_sim_time(text) if file == ROBOT else text
-            texts = {**given_programs(), **(PROGRAMS[programs] if programs else {})}
-            self._copies[name] = launch_probe.with_files(self._workspace, name, PACKAGE, files, texts)
+            programs_by_name = {**given_programs(), **(PROGRAMS[programs] if programs else {})}
+            self._copies[name] = launch_probe.with_files(self._workspace, name, PACKAGE, files, programs_by_name)
         return self._copies[name]

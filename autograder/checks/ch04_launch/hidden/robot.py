@@ -1,4 +1,4 @@
-"""One robot: arguments, parameters, a condition, a clean end."""
+"""Checks of robot.launch.py: arguments, parameters, a condition and a clean end."""
 
 from __future__ import annotations
 
@@ -7,17 +7,16 @@ from functools import partial
 
 from autograder.checking import LaunchHarness, Workspace, expect, group, hint
 from autograder.checking.probes import launch_probe
-from autograder.checks.ch04_launch.hidden.given import changed
+from autograder.checks.ch04_launch.hidden.given_package import changed_files
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, PACKAGE, REPORTER, ROBOT
 
 check = group("robot")
-SHOWN_SECONDS = 5.0  # real time until a line of a node that runs is shown
-REFUSED, CONDITIONS = ("maybe",), ("1",)  # values of report; IfCondition itself takes 1 for true
-REFUSE_SECONDS = 15.0  # real time until a launch has ended that refuses an argument
-TYPED = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
+SHOWN_SECONDS = 5.0  # s of real time until a running node's line is shown
+REFUSE_SECONDS = 15.0  # s of real time until a launch that refuses an argument has ended
+TYPE_HINT = "ParameterValue(LaunchConfiguration(...), value_type=...) says which type the text becomes."
 
 
 @check(points=2, covers=("robot-name", "speed", "report", "described"), doc=contract.SUBSTITUTIONS)
@@ -33,15 +32,15 @@ def test_arguments(launches: Launches) -> None:
 @check(points=2, covers="report", after=("arguments",), doc=contract.SUBSTITUTIONS)
 @hint("DeclareLaunchArgument takes choices=[...], a list of texts.")
 @hint("A value that is none of the choices ends the launch before anything is started.")
-def test_choices(workspace: Workspace, launches: Launches) -> None:
+def test_choices(workspace: Workspace, launches: Launches, inputs: Inputs) -> None:
     """Report can be true or false, and nothing else."""
-    declared = launches.robot_arguments().get("report")
-    expect(declared is not None, "The launch file declares no argument report.")
-    found = declared.choices if declared else ()
-    said = f"The argument report takes {', '.join(found)}, instead of true and false."
-    expect(sorted(found) in ([], ["false", "true"]), said)
-    # A launch file without a list may refuse what it does not want by other means, so that the launch decides.
-    for value in REFUSED if found else (*REFUSED, *CONDITIONS):
+    argument = launches.robot_arguments().get("report")
+    expect(argument is not None, "The launch file declares no argument report.")
+    choices = argument.choices if argument else ()
+    message = f"The argument report takes {', '.join(choices)}, instead of true and false."
+    expect(sorted(choices) in ([], ["false", "true"]), message)
+    # A launch file without choices may refuse a value by other means, so only a launch shows whether it does.
+    for value in inputs.refused[:1] if choices else inputs.refused:
         with LaunchHarness(workspace, PACKAGE, ROBOT, {"report": value}) as harness:
             harness.wait_for(partial(_has_ended, harness), REFUSE_SECONDS)
             expect(
@@ -55,17 +54,17 @@ def test_choices(workspace: Workspace, launches: Launches) -> None:
 def test_starts(workspace: Workspace, launches: Launches) -> None:
     """robot.launch.py starts driver and reporter, which are as they were given, and nothing else."""
     launch_probe.expect_nodes(launches.robot(), [DRIVER, REPORTER])
-    others = " and ".join(changed(workspace)[:3])
-    said = f"{others} is not as it was given. The checks started it as it was."
-    expect(not others, said, fraction=0.75)
+    changed_names = " and ".join(changed_files(workspace)[:3])
+    message = f"{changed_names} is not as it was given. The checks started it as it was."
+    expect(not changed_names, message, fraction=0.75)
 
 
 @check(points=1, covers=("argument-wins", "robot-name", "speed", "screen"), after=("starts",))
-@hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPED)
+@hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPE_HINT)
 @hint("output='screen' is an argument of each Node.")
 def test_defaults(launches: Launches) -> None:
     """Without arguments, it is robot1 at 0.2 m/s, whatever the parameters file says, and both nodes are on screen."""
-    driver, reporter = _found(launches.robot())
+    driver, reporter = _driver_and_reporter(launches.robot())
     launch_probe.expect_parameters(launches.robot(), driver, {"speed": contract.SPEED})
     launch_probe.expect_parameters(launches.robot(), reporter, {"robot_name": contract.ROBOT_NAME})
     for node, line in ((DRIVER, "Driving at"), (REPORTER, "Reporting for")):
@@ -77,42 +76,44 @@ def test_defaults(launches: Launches) -> None:
 @hint("parameters=[config, {...}] is a list: first the file, then what has to win over it.")
 def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
     """Both nodes get the parameters of config/robot.yaml."""
-    driver, reporter = _found(launches.robot())
+    driver, reporter = _driver_and_reporter(launches.robot())
     launch_probe.expect_parameters(launches.robot(), driver, {"turn_rate": inputs.file["turn_rate"]})
     launch_probe.expect_parameters(launches.robot(), reporter, {"report_period": inputs.file["report_period"]})
     for node in (driver, reporter):
-        found = (launches.robot().parameters(node, ["use_sim_time"]) or {}).get("use_sim_time")
-        said = f"The checks add use_sim_time: true to the file; {node} has use_sim_time = {found!r}, instead of True."
-        expect(found is True, said, fraction=0.75)
+        value = (launches.robot().parameters(node, ["use_sim_time"]) or {}).get("use_sim_time")
+        message = (
+            f"The checks add use_sim_time: true to the file; {node} has use_sim_time = {value!r}, instead of True."
+        )
+        expect(value is True, message, fraction=0.75)
 
 
 @check(points=2, covers=("speed", "driver"), after=("starts",), doc=contract.SUBSTITUTIONS)
-@hint("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPED)
+@hint("{'speed': LaunchConfiguration('speed')} is read when the launch runs, not when the file is.", TYPE_HINT)
 def test_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches the driver."""
     harness = launches.robot(speed=inputs.speed, robot_name=inputs.number_name)
-    driver, _ = _found(harness)
+    driver, _ = _driver_and_reporter(harness)
     launch_probe.expect_parameters(harness, driver, {"speed": inputs.speed})
 
 
 @check(points=2, covers=("robot-name", "reporter"), after=("starts",), doc=contract.SUBSTITUTIONS)
-@hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPED)
+@hint("42 is a number for YAML, and the reporter's robot_name is a text.", TYPE_HINT)
 @hint("Quotation marks put around a text by hand end at the first one inside it; value_type=str takes any text.")
 def test_name(launches: Launches, inputs: Inputs) -> None:
     """The argument robot_name reaches the reporter as it was given, like a number or with quotation marks."""
     harness = launches.robot(speed=inputs.speed, robot_name=inputs.number_name)
-    _, reporter = _found(harness)
+    _, reporter = _driver_and_reporter(harness)
     expect(
         reporter in harness.nodes(),
         f"With robot_name:={inputs.number_name}, the reporter does not run. {launch_probe.failure(harness.output)}",
     )
     launch_probe.expect_parameters(harness, reporter, {"robot_name": inputs.number_name})
-    harness = launches.quoted()
+    harness = launches.quoted_robot()
     launch_probe.settle(harness, [reporter])
-    found = (harness.parameters(reporter, ["robot_name"]) or {}).get("robot_name")
-    given = "not there" if found is None else repr(found)
-    said = f"With robot_name:={inputs.quoted_name}, robot_name of {REPORTER} is {given}, instead of that text."
-    expect(found == inputs.quoted_name, f"{said} {launch_probe.failure(harness.output)}".strip(), fraction=0.75)
+    value = (harness.parameters(reporter, ["robot_name"]) or {}).get("robot_name")
+    value_text = "not there" if value is None else repr(value)
+    message = f"With robot_name:={inputs.quoted_name}, robot_name of {REPORTER} is {value_text}, instead of that text."
+    expect(value == inputs.quoted_name, f"{message} {launch_probe.failure(harness.output)}".strip(), fraction=0.75)
 
 
 @check(points=2, covers=("report", "reporter", "driver"), after=("starts",), doc=contract.SUBSTITUTIONS)
@@ -126,17 +127,17 @@ def test_quiet(launches: Launches, inputs: Inputs) -> None:
         REPORTER not in nodes and "reporter" not in programs,
         "With report:=false, the reporter is started all the same.",
     )
-    # Whether what is started stays is for others: a driver that dies of its speed is seen as a node by chance.
+    # Other checks test whether the driver keeps running: if it dies of its speed, it is in the graph only by chance.
     expect(bool(programs), f"With report:=false, nothing is started. {launch_probe.failure(harness.output)}".strip())
     expect(len(nodes) < 2, f"With report:=false, {', '.join(nodes)} run, instead of {DRIVER} alone.", fraction=0.75)
 
 
 @check(points=1, covers=("speed", "screen"), after=("speed",))
-@hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPED)
+@hint("Without a type, 1 is an integer, and the driver's speed is a float: the driver dies.", TYPE_HINT)
 def test_whole_speed(launches: Launches, inputs: Inputs) -> None:
     """speed:=1, without a point, is a speed too."""
     harness = launches.robot(report="false", speed=inputs.whole_speed)
-    driver, _ = _found(harness, [DRIVER])
+    driver, _ = _driver_and_reporter(harness, [DRIVER])
     expect(
         driver in harness.nodes(),
         f"With speed:={inputs.whole_speed}, the driver does not run. {launch_probe.failure(harness.output)}",
@@ -159,15 +160,15 @@ def _has_ended(harness: LaunchHarness) -> bool:
     return harness.status is not None
 
 
-def _found(harness: LaunchHarness, wanted: Sequence[str] = (DRIVER, REPORTER)) -> tuple[str, str]:
-    """Return the names of driver and reporter in a launch, also where one of them was given another name."""
-    nodes = launch_probe.settle(harness, wanted)
+def _driver_and_reporter(harness: LaunchHarness, expected: Sequence[str] = (DRIVER, REPORTER)) -> tuple[str, str]:
+    """Return the names of driver and reporter in a launch, even if one of them has another name."""
+    nodes = launch_probe.settle(harness, expected)
     strangers = [name for name in nodes if name not in (DRIVER, REPORTER)]
     driver, reporter = (name if name in nodes or len(strangers) != 1 else strangers[0] for name in (DRIVER, REPORTER))
     return driver, reporter
 
 
 def _expect_on_screen(harness: LaunchHarness, node: str, line: str) -> None:
-    """Fail the check unless the stream is shown on which a launch makes its nodes log; see `Launches.robot`."""
-    shown = harness.wait_for(lambda: line in harness.output, SHOWN_SECONDS)
-    expect(shown, f"What {node} prints is not on the screen: it lacks output='screen'.", fraction=0.5)
+    """Fail the check unless the stream on which the nodes log is shown; see `Launches.robot`."""
+    is_shown = harness.wait_for(lambda: line in harness.output, SHOWN_SECONDS)
+    expect(is_shown, f"What {node} prints is not on the screen: it lacks output='screen'.", fraction=0.5)

@@ -1,4 +1,4 @@
-"""One thing after another: what happens when a process ends."""
+"""Checks of safe_start.launch.py: the order of the programs, and what happens when one ends."""
 
 from __future__ import annotations
 
@@ -7,35 +7,39 @@ import signal
 from autograder.checking import LaunchHarness, expect, group, hint
 from autograder.checking.probes import launch_probe
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
-from autograder.checks.ch04_launch.hidden.launches import UNUSUAL, Launches
+from autograder.checks.ch04_launch.hidden.launches import UNUSUAL_SELF_TESTS, Launches
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, REPORTER
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
 
 check = group("safe_start")
-END_SECONDS = 12.0  # real time; a node that is asked while it starts may need SIGTERM after 5 s
-ENDS = 6  # how often the scripted reporter ends by itself before it is seen that it always comes back
-WAITS = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
-FOLLOWS = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
+# Seconds of real time until everything has ended: a node that gets SIGINT while it starts may need SIGTERM 5 s later.
+END_SECONDS = 12.0
+ENDS = 6  # how often the scripted reporter ends before the check trusts that it is always restarted
+WAIT_HINT = "RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test))"
+SHUTDOWN_HINT = "RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))"
 
 
 @check(points=3, covers=("self-test", "safe-driver"), doc=contract.EVENTS)
-@hint("The driver is in no list but the one that after_self_test returns.", WAITS)
+@hint("The driver is in no list but the one that after_self_test returns.", WAIT_HINT)
 def test_order(launches: Launches, inputs: Inputs) -> None:
     """The driver starts once the self-test has passed, and not before."""
     harness = launches.safe(battery=inputs.enough)
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
-    started = launch_probe.started(harness.output)
-    expect("self_test" in started, f"The self-test was not started; {', '.join(started) or 'nothing'} was.")
-    times = started.count("self_test")  # more often than the launch itself says, if a launch file prints it
-    expect(times == 1, f"The self-test was started {times} times by what was printed, instead of once.")
+    started_programs = launch_probe.started(harness.output)
+    expect(
+        "self_test" in started_programs,
+        f"The self-test was not started; {', '.join(started_programs) or 'nothing'} was.",
+    )
+    count = started_programs.count("self_test")  # more than 1 if the launch file itself prints such lines
+    expect(count == 1, f"The self-test was started {count} times by what was printed, instead of once.")
     expect(
         DRIVER in nodes,
         f"With the battery at {inputs.enough} %, the driver does not run. {launch_probe.failure(harness.output)}",
     )
     before = harness.output.partition("[driver-")[0]
-    waits = "self_test" in launch_probe.ended(before) and not launches.is_early(harness)
-    expect(waits, "The driver was started before the self-test had ended.")
+    is_in_order = "self_test" in launch_probe.ended(before) and not launches.is_early(harness)
+    expect(is_in_order, "The driver was started before the self-test had ended.")
 
 
 @check(points=2, covers="safe-reporter", after=("order",), doc=contract.EVENTS)
@@ -63,8 +67,8 @@ def test_fails_safe(launches: Launches, inputs: Inputs) -> None:
 @hint("Only 0 is success: event.returncode == 0.")
 def test_killed(launches: Launches) -> None:
     """When the self-test is killed, or ends with exit status 3, all ends without the driver; it has its own name."""
-    for ending in UNUSUAL:
-        harness = launches.unusual(ending)
+    for ending in UNUSUAL_SELF_TESTS:
+        harness = launches.unusual_start(ending)
         _expect_refusal(harness, f"When the self-test ends {ending},")
         others = launch_probe.node_names(harness.output, "self_test") - {"self_test"}
         expect(not others, f"The self-test is called {', '.join(others)}, not self_test.")
@@ -77,13 +81,13 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
     """A battery without a point is a battery too, and 80 is the default."""
     harness = launches.safe(battery=inputs.whole_battery)
     nodes = launch_probe.settle(harness, [DRIVER, REPORTER])
-    what = f"With battery:={inputs.whole_battery}, the driver does not run."
-    expect(DRIVER in nodes, f"{what} {launch_probe.failure(harness.output)}".strip())
-    declared = launches.safe_arguments().get("battery")
-    expect(declared is not None, "safe_start.launch.py does not declare the argument battery.", fraction=0.5)
-    default = "80" if declared and declared.is_worked_out else declared.default if declared else None
-    said = "no default" if default is None else f"the default {default!r}"
-    expect(default == "80", f"The argument battery has {said}, instead of '80'.", fraction=0.5)
+    message = f"With battery:={inputs.whole_battery}, the driver does not run."
+    expect(DRIVER in nodes, f"{message} {launch_probe.failure(harness.output)}".strip())
+    argument = launches.safe_arguments().get("battery")
+    expect(argument is not None, "safe_start.launch.py does not declare the argument battery.", fraction=0.5)
+    default = "80" if argument and argument.is_computed else argument.default if argument else None
+    default_text = "no default" if default is None else f"the default {default!r}"
+    expect(default == "80", f"The argument battery has {default_text}, instead of '80'.", fraction=0.5)
 
 
 @check(points=2, covers="safe-reporter", after=("reporter_first",), doc=contract.LAUNCH)
@@ -91,38 +95,40 @@ def test_whole_battery(launches: Launches, inputs: Inputs) -> None:
 def test_respawns(launches: Launches, inputs: Inputs) -> None:
     """A reporter that dies is started again."""
     expect_respawn(launches.safe(battery=inputs.enough))
-    harness = launches.scripted()
-    often = harness.wait_for(lambda: _reporters(harness.output) > ENDS, launch_probe.START_SECONDS)
-    times = _reporters(harness.output)
-    said = f"A reporter that ends by itself, with exit status 0, was started {times} times, and then no more."
-    expect(often, said, fraction=0.75)
+    harness = launches.scripted_start()
+    is_restarted = harness.wait_for(lambda: _count_reporter_starts(harness.output) > ENDS, launch_probe.START_SECONDS)
+    count = _count_reporter_starts(harness.output)
+    message = f"A reporter that ends by itself, with exit status 0, was started {count} times, and then no more."
+    expect(is_restarted, message, fraction=0.75)
 
 
 @check(points=2, covers="safe-driver", after=("order",), doc=contract.EVENTS)
-@hint("The handler's target_action is the very Node that is started.", FOLLOWS)
+@hint("The handler's target_action is the very Node that is started.", SHUTDOWN_HINT)
 def test_driver_crash(launches: Launches, inputs: Inputs) -> None:
     """When the driver crashes, everything ends."""
     _expect_end(launches.safe(battery=inputs.enough), signal.SIGKILL, "The driver was killed")
-    harness = launches.scripted()
-    up = harness.wait_for(lambda: _driver_listens(harness), launch_probe.START_SECONDS)
-    expect(up, f"After a self-test of 3 s, no driver runs. {launch_probe.failure(harness.output)}", fraction=0.75)
+    harness = launches.scripted_start()
+    is_ready = harness.wait_for(lambda: _is_driver_ready(harness), launch_probe.START_SECONDS)
+    expect(is_ready, f"After a self-test of 3 s, no driver runs. {launch_probe.failure(harness.output)}", fraction=0.75)
     before = harness.output.partition("[driver-")[0]
-    early = "The driver was started before a self-test of 3 s had ended."
-    waits = "self_test" in launch_probe.ended(before) and not launches.is_early(harness)
-    expect(waits, early, fraction=0.75)
+    message = "The driver was started before a self-test of 3 s had ended."
+    is_in_order = "self_test" in launch_probe.ended(before) and not launches.is_early(harness)
+    expect(is_in_order, message, fraction=0.75)
     _expect_end(harness, signal.SIGTERM, "The driver ended with exit status 3", fraction=0.75)
-    # One may be on its way when the driver ends; 2 s later, there were more.
-    times = _reporters(harness.output.partition("exit code 3,")[2])
-    late = f"After the driver had ended, the reporter was started {times} times more before everything shut down."
-    expect(times <= 2, late, fraction=0.75)
+    # A reporter may be starting when the driver ends. One that is restarted for another 2 s starts more often.
+    count = _count_reporter_starts(harness.output.partition("exit code 3,")[2])
+    late_message = (
+        f"After the driver had ended, the reporter was started {count} times more before everything shut down."
+    )
+    expect(count <= 2, late_message, fraction=0.75)
 
 
 @check(points=1, covers=("safe-driver", "battery"), after=("whole_battery",), doc=contract.EVENTS)
-@hint("It does not matter how the driver ends: no look at event.returncode here.", FOLLOWS)
+@hint("It does not matter how the driver ends: no look at event.returncode here.", SHUTDOWN_HINT)
 def test_driver_end(launches: Launches, inputs: Inputs) -> None:
     """The driver has its own defaults; when it ends by itself, with exit status 0, everything ends too."""
     harness = launches.safe(battery=inputs.whole_battery)
-    if DRIVER not in harness.nodes():  # `whole_battery` says so; the same number, written in another way
+    if DRIVER not in harness.nodes():  # `whole_battery` reports this; here, the battery has a decimal point
         harness = launches.safe(battery=f"{inputs.enough:.3f}")
         launch_probe.settle(harness, [DRIVER, REPORTER])
     launch_probe.expect_parameters(harness, DRIVER, contract.NO_FILE[DRIVER])
@@ -131,31 +137,34 @@ def test_driver_end(launches: Launches, inputs: Inputs) -> None:
     expect(not others, f"safe_start.launch.py declares {others}, too; battery is the one argument.", fraction=0.5)
 
 
-def _expect_refusal(harness: LaunchHarness, what: str) -> None:
+def _expect_refusal(harness: LaunchHarness, situation: str) -> None:
     harness.wait_for(lambda: "self_test" in launch_probe.ended(harness.output), launch_probe.START_SECONDS)
-    over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
+    has_ended = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
     launch_probe.require_written(harness.output)
-    started = launch_probe.started(harness.output)
-    expect("self_test" in started, f"The self-test was not started. {launch_probe.failure(harness.output)}".strip())
-    expect("driver" not in started, f"{what} the driver was started.")
-    expect(over, f"{what} the driver was not started, but the launch goes on.", fraction=0.5)
+    started_programs = launch_probe.started(harness.output)
+    expect(
+        "self_test" in started_programs,
+        f"The self-test was not started. {launch_probe.failure(harness.output)}".strip(),
+    )
+    expect("driver" not in started_programs, f"{situation} the driver was started.")
+    expect(has_ended, f"{situation} the driver was not started, but the launch goes on.", fraction=0.5)
     expect(not harness.left(), f"The launch ended, but left a process running: {', '.join(harness.left())[:200]}.")
 
 
-def _expect_end(harness: LaunchHarness, number: signal.Signals, what: str, fraction: float = 0.0) -> None:
+def _expect_end(harness: LaunchHarness, stop_signal: signal.Signals, situation: str, fraction: float = 0.0) -> None:
     missing = f"There is not one driver. {launch_probe.failure(harness.output)}".strip()
-    expect(harness.kill("driver", number) == 1, missing, fraction=fraction)
-    over = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
-    expect(over, f"{what}, and the launch goes on without it.", fraction=fraction)
-    left = f"{what} and the launch with it, but this still runs: {', '.join(harness.left())[:200]}."
-    expect(not harness.left(), left, fraction=fraction)
+    expect(harness.kill("driver", stop_signal) == 1, missing, fraction=fraction)
+    has_ended = harness.wait_for(lambda: harness.status is not None, END_SECONDS)
+    expect(has_ended, f"{situation}, and the launch goes on without it.", fraction=fraction)
+    left_message = f"{situation} and the launch with it, but this still runs: {', '.join(harness.left())[:200]}."
+    expect(not harness.left(), left_message, fraction=fraction)
 
 
-def _reporters(output: str) -> int:
-    """Return how many reporters were started by a launch's output."""
+def _count_reporter_starts(output: str) -> int:
+    """Return how many times the reporter was started, according to a launch's output."""
     return launch_probe.started(output).count("reporter")
 
 
-def _driver_listens(harness: LaunchHarness) -> bool:
-    """Return whether the scripted driver has come to its loop, where it heeds SIGTERM."""
+def _is_driver_ready(harness: LaunchHarness) -> bool:
+    """Return whether the scripted driver has reached its loop, in which it handles SIGTERM."""
     return any(program.has_children for program in harness.programs() if program.name == "driver")

@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 04_launch share."""
+"""Code that the visible and the hidden checks of 04_launch share."""

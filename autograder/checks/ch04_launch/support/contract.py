@@ -17,7 +17,7 @@ NO_FILE: dict[str, dict[str, parameters.Value]] = {  # the defaults of the nodes
     DRIVER: {"speed": 0.1, "turn_rate": 0.0},
     REPORTER: {"robot_name": "nobody", "report_period": 1.0},
 }
-FIRST, SECOND = "robot1", "robot2"  # those of two_robots.launch.py
+FIRST, SECOND = "robot1", "robot2"  # the defaults of two_robots.launch.py
 
 LAUNCH = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Creating-Launch-Files.html"
 SUBSTITUTIONS = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Using-Substitutions.html"
@@ -25,6 +25,6 @@ EVENTS = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Using-Even
 LARGE = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Launch/Using-ROS2-Launch-For-Large-Projects.html"
 
 
-def in_spaces(*spaces: str) -> list[str]:
+def nodes_in_namespaces(*namespaces: str) -> list[str]:
     """Return the full names of the nodes of robots in these namespaces."""
-    return sorted(f"/{space}{node}" for space in spaces for node in (DRIVER, REPORTER))
+    return sorted(f"/{namespace}{node}" for namespace in namespaces for node in (DRIVER, REPORTER))

@@ -1,4 +1,4 @@
-"""Whether a launch starts a program again, as often as it is killed."""
+"""Tests whether a launch restarts a program each time it is killed."""
 
 from __future__ import annotations
 
@@ -6,37 +6,37 @@ import time
 
 from autograder.checking import LaunchHarness, RunningProgram, expect
 
-RESPAWN_SECONDS = 10.0  # real time, generous for a machine that is busy
-DELAY = 0.5  # s
-LATE = 0.95  # s; a machine that is busy adds to the delay, but hardly so much each time
+RESPAWN_SECONDS = 10.0  # s of real time to wait for a new reporter; the machine may be busy
+DELAY = 0.5  # s from the end of a reporter to the start of the next one
+LATE = 0.95  # s: such a delay is too long; a busy machine hardly causes it in each of three trials
 TIMES = ("once", "twice", "three times")
 
 
 def expect_respawn(harness: LaunchHarness) -> None:
-    """Kill the reporter three times and expect another one each time, half a second later.
+    """Kill the reporter three times; fail the check unless each time, a new one starts half a second later.
 
     Raises:
-        CheckFailed: it stays away, comes too early, comes late each time, or the launch ends.
+        CheckFailed: no new reporter starts, one starts too early, all start too late, or the launch ends.
     """
     seconds = [_respawn(harness, times) for times in TIMES]
-    again = f"The reporter was started again {{:.2f}} s after it had been killed, instead of after {DELAY:g} s."
-    expect(min(seconds) >= DELAY - harness.start_resolution, again.format(min(seconds)), fraction=0.5)
-    expect(min(seconds) < LATE, again.format(min(seconds)), fraction=0.5)
+    template = f"The reporter was started again {{:.2f}} s after it had been killed, instead of after {DELAY:g} s."
+    expect(min(seconds) >= DELAY - harness.start_resolution, template.format(min(seconds)), fraction=0.5)
+    expect(min(seconds) < LATE, template.format(min(seconds)), fraction=0.5)
 
 
-def _respawn(harness: LaunchHarness, times: str) -> float:
-    """Kill the reporter, and return after how many seconds the kernel started the next one."""
-    before, started = _reporters(harness), list[float]()
-    killed = time.clock_gettime(time.CLOCK_BOOTTIME)
+def _respawn(harness: LaunchHarness, count_text: str) -> float:
+    """Kill the reporter; return the seconds until the kernel started the next one."""
+    before, start_times = _reporters(harness), list[float]()
+    kill_time = time.clock_gettime(time.CLOCK_BOOTTIME)
     harness.kill("reporter")
 
-    def back() -> bool:
-        started.extend(filter(None, (program.start_seconds for program in _reporters(harness) - before)))
-        return bool(started)
+    def has_restarted() -> bool:
+        start_times.extend(filter(None, (program.start_seconds for program in _reporters(harness) - before)))
+        return bool(start_times)
 
-    expect(harness.wait_for(back, RESPAWN_SECONDS), f"The reporter was killed {times}, and stayed away.")
+    expect(harness.wait_for(has_restarted, RESPAWN_SECONDS), f"The reporter was killed {count_text}, and stayed away.")
     expect(harness.status is None, "The reporter was killed, and the launch ended with it.")
-    return min(started) - killed
+    return min(start_times) - kill_time
 
 
 def _reporters(harness: LaunchHarness) -> set[RunningProgram]:

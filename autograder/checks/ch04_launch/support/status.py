@@ -1,11 +1,11 @@
-"""Which robots report on the topic that they share."""
+"""Finds the robots that report on the topic that they share."""
 
 from __future__ import annotations
 
 from autograder.checking import LaunchHarness
 from autograder.checks.ch04_launch.support.contract import SHARED
 
-HEAR_SECONDS = 10.0  # real time for two robots to report; they do so twice a second
+REPORT_SECONDS = 10.0  # s of real time for two robots to report, which they do twice a second
 
 
 def reporting_robots(harness: LaunchHarness) -> set[str]:

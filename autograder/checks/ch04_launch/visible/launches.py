@@ -1,4 +1,4 @@
-"""What the three launch files start, and what ends them."""
+"""Checks of the nodes that the three launch files start, and of how the launches end."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from autograder.checking.probes import launch_probe
 from autograder.checks.ch04_launch.support import contract
 from autograder.checks.ch04_launch.support.contract import DRIVER, FLEET, PACKAGE, REPORTER, ROBOT, SAFE, SHARED
 from autograder.checks.ch04_launch.support.respawn import expect_respawn
-from autograder.checks.ch04_launch.support.status import HEAR_SECONDS, reporting_robots
+from autograder.checks.ch04_launch.support.status import REPORT_SECONDS, reporting_robots
 
-NAMES = ("tram", "lorry")  # of the two robots
+NAMES = ("tram", "lorry")  # the names of the two robots
 
 
 @dataclass(frozen=True)
 class Launches:
-    """Every launch that the checks look at."""
+    """The launches that the checks share."""
 
     robot: LaunchHarness
     quiet: LaunchHarness
@@ -33,7 +33,7 @@ class Launches:
 
 @pytest.fixture(scope="module")
 def launches(workspace: Workspace) -> Iterator[Launches]:
-    """Start them all with the first check that asks: together they are up in half the time, and a student waits."""
+    """Start all launches with the first check: together, they need half the time, and the student is waiting."""
     with ExitStack() as stack:
 
         def start(file: str, arguments: dict[str, str], subscribes: dict[str, type] | None = None) -> LaunchHarness:
@@ -53,7 +53,7 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
 @hint("The names are robot_name, speed and report.")
 def test_arguments(workspace: Workspace) -> None:
     """robot.launch.py declares robot_name, speed and report."""
-    arguments = launch_probe.shown_arguments(workspace, PACKAGE, ROBOT)
+    arguments = launch_probe.declared_arguments(workspace, PACKAGE, ROBOT)
     for name, default in (("robot_name", contract.ROBOT_NAME), ("speed", str(contract.SPEED)), ("report", "true")):
         launch_probe.expect_argument(arguments, name, default)
 
@@ -88,11 +88,11 @@ def test_quiet(launches: Launches) -> None:
 def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts two robots with given names and speed; both report on /fleet/status."""
     harness = launches.fleet
-    launch_probe.expect_nodes(harness, contract.in_spaces(*NAMES))
-    for space in NAMES:
-        launch_probe.expect_parameters(harness, f"/{space}{DRIVER}", {"speed": 0.31})
-        launch_probe.expect_parameters(harness, f"/{space}{REPORTER}", {"robot_name": space})
-    harness.wait_for(lambda: len(reporting_robots(harness)) == 2, HEAR_SECONDS)
+    launch_probe.expect_nodes(harness, contract.nodes_in_namespaces(*NAMES))
+    for name in NAMES:
+        launch_probe.expect_parameters(harness, f"/{name}{DRIVER}", {"speed": 0.31})
+        launch_probe.expect_parameters(harness, f"/{name}{REPORTER}", {"robot_name": name})
+    harness.wait_for(lambda: len(reporting_robots(harness)) == 2, REPORT_SECONDS)
     expect(
         len(reporting_robots(harness)) == 2,
         f"On {SHARED}, {', '.join(sorted(reporting_robots(harness))) or 'nobody'} was heard.",
@@ -106,9 +106,9 @@ def test_safe_start(launches: Launches) -> None:
     """safe_start.launch.py starts the driver with a full battery, and ends without it when the battery is empty."""
     launch_probe.expect_nodes(launches.full, [DRIVER, REPORTER])
     harness = launches.empty
-    ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
+    has_ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
     expect("driver" not in launch_probe.started(harness.output), "With the battery at 5 %, the driver was started.")
-    expect(ended, "With the battery at 5 %, the launch did not end by itself.")
+    expect(has_ended, "With the battery at 5 %, the launch did not end by itself.")
 
 
 @check(points=1, covers="safe-reporter", group="safe_start", after=("safe_start",), doc=contract.LAUNCH)
@@ -124,5 +124,5 @@ def test_driver_stops(launches: Launches) -> None:
     """When the driver gets SIGTERM and ends, everything shuts down."""
     harness = launches.full
     expect(harness.kill("driver", signal.SIGTERM) == 1, "There is not one driver.")
-    ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
-    expect(ended, "The driver ended, and the launch goes on without it.")
+    has_ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
+    expect(has_ended, "The driver ended, and the launch goes on without it.")

@@ -1,4 +1,4 @@
-"""The hidden suite of 05_parameters: declared, set at the start, changed at run time, and kept in a file."""
+"""The hidden suite of 05_parameters: declaring, setting, changing and storing parameters."""
 
 PACKAGES = ("my_robot_package",)
 MODULES = ("declaration", "start_values", "changes", "files")

@@ -1,4 +1,4 @@
-"""The node started with other values than its defaults: it has them, drives by them, or refuses to start."""
+"""Checks of the node's behaviour when it is started with values other than its defaults."""
 
 from __future__ import annotations
 
@@ -8,22 +8,35 @@ from random import Random
 
 import pytest
 
-from autograder.checking import Artifacts, CheckFailed, Shared, Workspace, drive, expect, group, hint, temporal
-from autograder.checking.probes import calls, parameters
-from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, refusal
+from autograder.checking import (
+    Artifacts,
+    CheckFailed,
+    Shared,
+    Workspace,
+    drive,
+    expect,
+    group,
+    hint,
+    temporal,
+)
+from autograder.checking.drawn_cases import expect_each
+from autograder.checking.probes import parameters
+from autograder.checks.ch05_parameters.support import bench, contract
+from autograder.checks.ch05_parameters.support.answers import allowed_start, expect_start, subtlety
+from autograder.checks.ch05_parameters.support.drawn_requests import REFUSED, TAKEN, Request, starts, values_text
+from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, start_error
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
-CONFIGURATION = "my_robot_package.configuration"
-RADIUS = 0.18  # m
-SECONDS = 20.0
-NEAR = 0.02  # m between where it stands and where it should
+STARTS = {REFUSED: 12, TAKEN: 4}  # how many starts are drawn, all in one process
+RADIUS = 0.18  # m: the robot's radius
+DRIVE_SECONDS = 16.0  # s: the length of the drive
+STOP_MARGIN = 0.02  # m between where the robot stands and where it should stand
 
 
 @dataclass(frozen=True)
-class Configured:
-    """A node that was started with values of its own, and those values."""
+class ConfiguredRobot:
+    """A node that was started with drawn values, and these values."""
 
     robot: Robot
     values: dict[str, parameters.Value]
@@ -35,29 +48,34 @@ class Configured:
 
 
 def start_numbers(seed: int) -> dict[str, float]:
-    """Return drawn numbers for the five parameters that have limits, in the order of `Configured`."""
-    drawn = Random(f"{seed}:custom")
-    velocity, safety = drawn.randrange(40, 80) / 100, drawn.randrange(70, 110) / 100
+    """Draw numbers for the five parameters that have limits, in the order of `ConfiguredRobot`."""
+    generator = Random(f"{seed}:custom")
+    velocity, safety = generator.randrange(40, 80) / 100, generator.randrange(70, 110) / 100
     return {
         "max_linear_velocity": velocity,
         "safety_distance": safety,
-        "slow_distance": round(safety + drawn.randrange(30, 60) / 100, 2),
-        "control_frequency": drawn.choice((20.0, 25.0, 50.0)),
-        "battery_threshold": drawn.randrange(35, 65),
+        "slow_distance": round(safety + generator.randrange(30, 60) / 100, 2),
+        "control_frequency": generator.choice((20.0, 25.0, 50.0)),
+        "battery_threshold": generator.randrange(35, 65),
     }
 
 
 @pytest.fixture(scope="module")
-def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> Iterator[Configured]:
-    """A node started with drawn values for all six parameters."""
-    present = shared_robot.get()
+def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> Iterator[ConfiguredRobot]:
+    """A node that was started with drawn values for all six parameters."""
+    default_robot = shared_robot.get()
     numbers = start_numbers(seed)
-    drawn = {name: present.allowed(name, number, up=name == "slow_distance") for name, number in numbers.items()}
-    velocity, safety, slow, frequency, threshold = drawn.values()
-    values: dict[str, parameters.Value] = {"robot_name": f"Robot{Random(f'{seed}:name').randrange(100, 999)}", **drawn}
-    values = parameters.as_declared({**values, "battery_threshold": int(threshold)}, present.initial)
+    drawn_numbers = {
+        name: default_robot.allowed(name, number, up=name == "slow_distance") for name, number in numbers.items()
+    }
+    velocity, safety, slow, frequency, threshold = drawn_numbers.values()
+    values: dict[str, parameters.Value] = {
+        "robot_name": f"Robot{Random(f'{seed}:name').randrange(100, 999)}",
+        **drawn_numbers,
+    }
+    values = parameters.as_declared({**values, "battery_threshold": int(threshold)}, default_robot.initial)
     with Robot(workspace, values) as robot:
-        yield Configured(robot, values, velocity, safety, slow, frequency, int(threshold))
+        yield ConfiguredRobot(robot, values, velocity, safety, slow, frequency, int(threshold))
 
 
 @check(
@@ -69,7 +87,7 @@ def configured(workspace: Workspace, shared_robot: Shared[Robot], seed: int) -> 
 )
 @hint("declare_parameter takes an override by itself; a set_parameters after it would undo that.")
 @hint("ignore_override=True lets the default win over a file: leave it out.")
-def test_overrides(configured: Configured) -> None:
+def test_overrides(configured: ConfiguredRobot) -> None:
     """Started with values from the command line, it has these values."""
     wrong = parameters.differences(configured.robot.parameters.values(*configured.values), configured.values)
     expect(not wrong, f"{'; '.join(wrong)}.", fraction=round(0.8 * (1 - len(wrong) / len(configured.values)), 2))
@@ -77,7 +95,7 @@ def test_overrides(configured: Configured) -> None:
 
 @check(points=2, covers="max_linear_velocity", needs=("starts",), after=("overrides",))
 @hint("speed, which is given, asks for max_linear_velocity at each command: leave it so.")
-def test_start_speed(configured: Configured) -> None:
+def test_start_speed(configured: ConfiguredRobot) -> None:
     """Where the way is clear, it drives at the speed that it was started with."""
     speed = configured.robot.speed_at(configured.slow + 0.3)
     expect_speed(speed, configured.velocity, f"Started with max_linear_velocity {configured.velocity}")
@@ -85,7 +103,7 @@ def test_start_speed(configured: Configured) -> None:
 
 @check(points=2, covers="control_frequency", needs=("starts",), after=("overrides",))
 @hint("create_timer gets a period in seconds: 1.0 / frequency.")
-def test_start_rate(configured: Configured) -> None:
+def test_start_rate(configured: ConfiguredRobot) -> None:
     """It publishes at the frequency that it was started with."""
     expect_rate(
         configured.robot.command_rate(), configured.frequency, f"Started with control_frequency {configured.frequency}"
@@ -94,35 +112,40 @@ def test_start_rate(configured: Configured) -> None:
 
 @check(points=1, covers="battery_threshold", needs=("starts",), after=("overrides",))
 @hint("A battery below battery_threshold, in percent, means: stand still.")
-def test_start_threshold(configured: Configured) -> None:
+def test_start_threshold(configured: ConfiguredRobot) -> None:
     """It stands still with a battery below its threshold, and drives with one above."""
     situation = f"With a threshold of {configured.threshold} percent and a charge of"
     low, high = configured.threshold - 5, configured.threshold + 5
-    configured.robot.charge(low)
+    configured.robot.publish_charge(low)
     expect_speed(configured.robot.speed_at(3.0), 0.0, f"{situation} {low}")
-    configured.robot.charge(high)
-    expect(
-        configured.robot.speed_at(3.0) > 0.0, f"{situation} {high}, it does not drive."
-    )  # how fast is no matter here
+    configured.robot.publish_charge(high)
+    drives = configured.robot.speed_at(3.0) > 0.0  # at any speed
+    expect(drives, f"{situation} {high}, it does not drive.")
 
 
 @check(points=3, covers="safety_distance", needs=("starts",), after=("overrides", "start_speed"))
 @hint("Look at the picture: where does it stand, and where should it?")
 @hint("Drive it yourself: drive(..., parameters={'safety_distance': 0.9, 'slow_distance': 1.4}).")
-def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> None:
+def test_stops(configured: ConfiguredRobot, draw: Random, artifacts: Artifacts) -> None:
     """In the simulator, it drives up to a wall and stops at its safety distance."""
-    recording = drive(configured.robot, _towards_a_wall(draw), SECONDS).recording
+    recording = drive(configured.robot, _hall(draw), DRIVE_SECONDS).recording
     ahead = (recording.simulation.world.bounds[2] - recording.poses[:, 0, 0]).tolist()
-    end = ahead[-1]
-    sentence = f"With a safety distance of {configured.safety} m, it stood {end:.2f} m before the wall in the end."
-    verdict = temporal.always(
-        "gap > 0", recording.times.tolist(), {"gap": [x - configured.safety + NEAR for x in ahead]}
+    final_distance = ahead[-1]
+    sentence = (
+        f"With a safety distance of {configured.safety} m, it stood {final_distance:.2f} m before the wall in the end."
     )
-    rules = {f"the distance to the wall, in m, is above {configured.safety - NEAR:.2f}": verdict}
-    artifacts.track("track", recording, sentence, mark=SECONDS, note=f"{end:.2f} m", rules=rules)
+    verdict = temporal.always(
+        "gap > 0", recording.times.tolist(), {"gap": [x - configured.safety + STOP_MARGIN for x in ahead]}
+    )
+    rules = {f"the distance to the wall, in m, is above {configured.safety - STOP_MARGIN:.2f}": verdict}
+    artifacts.track("track", recording, sentence, mark=DRIVE_SECONDS, note=f"{final_distance:.2f} m", rules=rules)
     if verdict.violated_at is not None:
         raise CheckFailed(f"It came nearer than {configured.safety} m at t = {verdict.violated_at:.1f} s. {sentence}")
-    expect(end < configured.safety + NEAR, sentence, fraction=0.5 if ahead[0] - end > NEAR else 0.0)
+    expect(
+        final_distance < configured.safety + STOP_MARGIN,
+        sentence,
+        fraction=0.5 if ahead[0] - final_distance > STOP_MARGIN else 0.0,
+    )
 
 
 @check(points=2, covers=("contradictory-start", "contradiction", "reason", "ranges"), needs=("starts",))
@@ -132,53 +155,30 @@ def test_stops(configured: Configured, draw: Random, artifacts: Artifacts) -> No
 def test_contradictory_start(robot: Robot, workspace: Workspace, draw: Random) -> None:
     """It does not start with a safety distance that is not below the slow distance."""
     distance = robot.allowed("slow_distance", robot.allowed("safety_distance", draw.randrange(40, 90) / 100))
-    for safety, slow in ((robot.allowed("safety_distance", distance + 0.4), distance), (distance, distance)):
-        values = {"safety_distance": safety, "slow_distance": slow}
-        words = refusal(workspace, parameters.as_declared(values, robot.initial))
-        told = f"safety_distance {safety} and slow_distance {slow}"
-        fraction = 0.75 if safety == slow else 0.0
-        expect(words is not None, f"Started with {told}, the node runs.", fraction=fraction)
-        expect(not missing_from(words or "", values), f"It ends, but does not name {told}.", fraction=0.5)
-    frequency = draw.randrange(55, 90) + 0.5  # above the limits
-    fits, equal, start, beyond = _called(workspace, distance, frequency)
-    raised, message, sentence = (
-        start.raised,
-        parameters.shortened(start.message),
-        parameters.shortened(str(equal.value)),
+    values = {"safety_distance": robot.allowed("safety_distance", distance + 0.4), "slow_distance": distance}
+    error = start_error(workspace, parameters.as_declared(values, robot.initial))
+    expect(error is not None, f"Started with {values_text(values)}, the node runs.")
+    expect(not missing_from(error or "", values), f"It ends, but does not name {values_text(values)}.", fraction=0.5)
+    drawn_starts: list[Request] = []
+    for kind, count in STARTS.items():
+        expect_each(starts(kind), drawn_starts.append, draw, count=count)
+    out_of_range: dict[str, parameters.Value] = {"control_frequency": draw.randrange(55, 90) + 0.5}
+    in_range = [allowed_start(robot, start) for start in ((), *drawn_starts)]
+    *outcomes, outcome_out_of_range = bench.declare(workspace, [*in_range, out_of_range])
+    for start, outcome in sorted(zip(in_range, outcomes, strict=True), key=lambda pair: subtlety(pair[0])):
+        expect_start(start, outcome)
+    observation = f"Started with {values_text(out_of_range)}, declare_configuration raised nothing"
+    expect(
+        bool(outcome_out_of_range.declared.raised),
+        f"{observation}: ROS refuses what is not in 1.0 to 50.0, and so should it.",
+        fraction=0.75,
     )
-    said = f"contradiction(0.5, 1.0) {f'raised {fits.raised}' if fits.raised else f'returned {fits.value!r}'}"
-    expect(fits.value == "", f"{said}, instead of returning ''.", fraction=0.5)
-    said = f"declare_configuration raised {raised or 'nothing'}, which is no ValueError"
-    expect("ValueError" in start.kinds, f"{said}.", fraction=0.5)
-    said = f"declare_configuration raised ValueError with “{message}”; contradiction says “{sentence}”"
-    expect(sentence[:100] in message, f"{said}.", fraction=0.75)
-    said = f"Started with control_frequency {frequency}, declare_configuration raised nothing"
-    expect(bool(beyond.raised), f"{said}: ROS refuses what is not in 1.0 to 50.0, and so should it.", fraction=0.75)
 
 
-def _called(workspace: Workspace, distance: float, frequency: float) -> tuple[calls.StepResult, ...]:
-    """Ask contradiction about distances that fit and equal ones; declare at equal ones and at a frequency."""
-    equal = parameters.override_arguments({"safety_distance": distance, "slow_distance": distance})
-    beyond = parameters.override_arguments({"control_frequency": frequency})
-    outcomes = calls.calls(
-        workspace,
-        CONFIGURATION,
-        calls.call("contradiction", 0.5, 1.0),
-        calls.call("contradiction", distance, distance),
-        calls.call("init", module="rclpy"),
-        calls.call("Node", "bench", module="rclpy.node", cli_args=["--ros-args", *equal]),
-        calls.call("declare_configuration", calls.made(3)),
-        calls.call("Node", "other_bench", module="rclpy.node", cli_args=["--ros-args", *beyond]),
-        calls.call("declare_configuration", calls.made(5)),
-        network=True,
-    )
-    return outcomes[0], outcomes[1], outcomes[4], outcomes[6]
-
-
-def _towards_a_wall(draw: Random) -> Simulation:
-    """Return a hall whose east wall is straight ahead of the robot, well beyond any slow distance."""
+def _hall(draw: Random) -> Simulation:
+    """Return a hall whose east wall is straight ahead of the robot, far beyond any slow distance."""
     world = World.from_segments(
-        box(draw.uniform(6.5, 7.5), 4.0).tolist(),
+        box(draw.uniform(5.5, 6.5), 4.0).tolist(),
         name="a hall",
         segment_names=["south wall", "east wall", "north wall", "west wall"],
         starts=[Pose(draw.uniform(-0.5, 0.0), draw.uniform(-0.5, 0.5), 0.0)],

@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 05_parameters share."""
+"""Code that the visible and the hidden checks of 05_parameters share."""

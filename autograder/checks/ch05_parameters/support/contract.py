@@ -1,4 +1,4 @@
-"""The contract of the exercises, as data, and the names that the checks use."""
+"""The contract of the exercises, as data, and names that several checks use."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ FLEET = "fleet_params.yaml"
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """A parameter as the exercise asks for it.
+class Specification:
+    """A parameter as the exercise specifies it.
 
     Attributes:
         type: a constant of ParameterType.
-        default: its value when nobody sets it.
-        low: the least value, None without a range.
-        high: the greatest value, None without a range.
-        unit: what its description names, '' without a unit.
+        default: its value if it is not set.
+        low: the lowest value; None if there is no range.
+        high: the highest value; None if there is no range.
+        unit: the unit that its description must name; '' if there is none.
     """
 
     type: int
@@ -34,26 +34,27 @@ class Wanted:
 
 
 DOUBLE = ParameterType.PARAMETER_DOUBLE
-WANTED = {
-    "robot_name": Wanted(ParameterType.PARAMETER_STRING, "DefaultRobot"),
-    "max_linear_velocity": Wanted(DOUBLE, 0.3, 0.0, 1.0, "m/s"),
-    "safety_distance": Wanted(DOUBLE, 0.5, 0.2, 3.0, "m"),
-    "slow_distance": Wanted(DOUBLE, 1.0, 0.2, 3.0, "m"),
-    "control_frequency": Wanted(DOUBLE, 10.0, 1.0, 50.0, "Hz"),
-    "battery_threshold": Wanted(ParameterType.PARAMETER_INTEGER, 20, 0, 100, "percent"),
+SPECIFICATIONS = {
+    "robot_name": Specification(ParameterType.PARAMETER_STRING, "DefaultRobot"),
+    "max_linear_velocity": Specification(DOUBLE, 0.3, 0.0, 1.0, "m/s"),
+    "safety_distance": Specification(DOUBLE, 0.5, 0.2, 3.0, "m"),
+    "slow_distance": Specification(DOUBLE, 1.0, 0.2, 3.0, "m"),
+    "control_frequency": Specification(DOUBLE, 10.0, 1.0, 50.0, "Hz"),
+    "battery_threshold": Specification(ParameterType.PARAMETER_INTEGER, 20, 0, 100, "percent"),
 }
-TABLE_ROWS = tuple(WANTED)  # ids of sentences: the rows of the table of parameters
-FLEET_ROWS = tuple(f"fleet-{name.replace('_', '-')}" for name in WANTED)  # the rows of the table of robots
-DEFAULTS = {name: wanted.default for name, wanted in WANTED.items()}
+TABLE_ROWS = tuple(SPECIFICATIONS)  # the ids of the requirements in the table of parameters
+FLEET_ROWS = tuple(f"fleet-{name.replace('_', '-')}" for name in SPECIFICATIONS)  # those in the table of robots
+DEFAULTS = {name: specification.default for name, specification in SPECIFICATIONS.items()}
 CHANGEABLE = {name: value for name, value in DEFAULTS.items() if name != "robot_name"}
 
+# The values that every robot of the fleet has, and the values of single robots.
 SHARED: dict[str, parameters.Value] = {
     "max_linear_velocity": 0.3,
     "safety_distance": 0.6,
     "slow_distance": 1.5,
     "battery_threshold": 25,
 }
-OWN: dict[str, dict[str, parameters.Value]] = {
+PER_ROBOT: dict[str, dict[str, parameters.Value]] = {
     "scout": {"robot_name": "Scout", "max_linear_velocity": 0.6},
     "porter": {"robot_name": "Porter", "safety_distance": 1.0, "control_frequency": 20.0},
 }
@@ -64,5 +65,5 @@ ARGUMENTS = "https://docs.ros.org/en/jazzy/How-To-Guides/Node-arguments.html"
 
 
 def fleet_values(name: str) -> dict[str, parameters.Value]:
-    """Return every value that a robot of this name has with the fleet's file."""
-    return {**DEFAULTS, **SHARED, **OWN.get(name, {})}
+    """Return all values of the robot with this name if it is started with the fleet's parameter file."""
+    return {**DEFAULTS, **SHARED, **PER_ROBOT.get(name, {})}

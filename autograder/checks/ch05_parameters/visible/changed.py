@@ -1,4 +1,4 @@
-"""What becomes of a change while the node runs."""
+"""Checks of parameter changes at run time."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ def test_contradiction(robot: Robot) -> None:
     """It refuses distances that do not fit, whichever is set, and equal ones; its reason names both, with values."""
     answer = robot.change({"safety_distance": 1.5})
     expect(not answer.accepted, "With a slow_distance of 1.0 m, it took 1.5 m for safety_distance.")
-    named = all(part in answer.reason for part in (*PAIR, "1.5"))
-    expect(named, f"It refused 1.5 m for safety_distance; its reason was “{answer.reason}”.")
+    names_both = all(part in answer.reason for part in (*PAIR, "1.5"))
+    expect(names_both, f"It refused 1.5 m for safety_distance; its reason was “{answer.reason}”.")
     answer = robot.change({"slow_distance": 0.3})
     expect(not answer.accepted, "With a safety_distance of 0.5 m, it took 0.3 m for slow_distance.")
     answer = robot.change({"safety_distance": 0.7, "slow_distance": 0.7})

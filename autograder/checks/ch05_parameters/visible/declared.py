@@ -1,12 +1,12 @@
-"""What the node declares, and with which values it starts."""
+"""Checks of the declared parameters, and of the values with which the node starts."""
 
 from __future__ import annotations
 
 from autograder.checking import Workspace, expect, group, hint
 from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, WANTED
-from autograder.checks.ch05_parameters.support.robot import Robot, refusal
+from autograder.checks.ch05_parameters.support.contract import DEFAULTS, NODE, SPECIFICATIONS
+from autograder.checks.ch05_parameters.support.robot import Robot, start_error
 
 check = group("declaration")
 
@@ -35,12 +35,12 @@ def test_starts(robot: Robot) -> None:
 def test_table(robot: Robot) -> None:
     """It declares the six parameters with the types and defaults of the table, and no others."""
     names = robot.parameters.names()
-    expect(not (sentence := parameters.missing_sentence(WANTED, names)), sentence)
-    expect(not (others := sorted(names - set(WANTED))), f"It also declares {', '.join(others)}.")
+    expect(not (sentence := parameters.missing_sentence(SPECIFICATIONS, names)), sentence)
+    expect(not (others := sorted(names - set(SPECIFICATIONS))), f"It also declares {', '.join(others)}.")
     wrong = [
-        f"{name} is {parameters.TYPES.get(found.type, 'an array')} instead of {parameters.TYPES[WANTED[name].type]}"
-        for name, found in robot.parameters.descriptors(*WANTED).items()
-        if found.type != WANTED[name].type
+        f"{name} is {parameters.TYPE_NAMES.get(actual, 'an array')} instead of {parameters.TYPE_NAMES[expected]}"
+        for name, descriptor in robot.parameters.descriptors(*SPECIFICATIONS).items()
+        if (actual := descriptor.type) != (expected := SPECIFICATIONS[name].type)
     ]
     wrong = wrong or parameters.differences(robot.parameters.values(*DEFAULTS), DEFAULTS)
     expect(not wrong, f"{'; '.join(wrong)}.")
@@ -60,9 +60,9 @@ def test_refuses(robot: Robot) -> None:
         ("battery_threshold", 101),
         ("robot_name", "R2"),
     ]
-    declared = robot.parameters.names()
+    declared_names = robot.parameters.names()
     for name, value in requests:
-        expect(name in declared, f"It does not declare {name}.")
+        expect(name in declared_names, f"It does not declare {name}.")
         answer = robot.parameters.change({name: value})
         expect(not answer.accepted, f"It took {parameters.value_text(value)} for {name}.")
         expect(bool(answer.reason), f"It refused {parameters.value_text(value)} for {name}, but gave no reason.")
@@ -72,16 +72,18 @@ def test_refuses(robot: Robot) -> None:
 @hint("ParameterDescriptor(description='...', ...): one sentence for each name, with the unit in it.")
 def test_described(robot: Robot) -> None:
     """Each parameter has a description; that of max_linear_velocity names m/s, that of control_frequency Hz."""
-    described = {name: found.description for name, found in robot.parameters.descriptors(*WANTED).items()}
-    empty = [name for name, words in described.items() if not words.strip()]
+    descriptions = {
+        name: descriptor.description for name, descriptor in robot.parameters.descriptors(*SPECIFICATIONS).items()
+    }
+    empty = [name for name, text in descriptions.items() if not text.strip()]
     expect(not empty, f"There is no description of {', '.join(empty)}.")
     for name, unit in (("max_linear_velocity", "m/s"), ("control_frequency", "Hz")):
-        expect(unit.lower() in described.get(name, "").lower(), f"The description of {name} does not name {unit}.")
+        expect(unit.lower() in descriptions.get(name, "").lower(), f"The description of {name} does not name {unit}.")
 
 
 @check(points=1, covers="contradictory-start", needs=("starts",), after=("table",))
 @hint("After the last declare_parameter: get both values, ask contradiction, and raise ValueError with its sentence.")
 def test_start_refused(workspace: Workspace) -> None:
     """It does not start with a safety distance of 2.2 m and a slow distance of 2.0 m."""
-    words = refusal(workspace, {"safety_distance": 2.2, "slow_distance": 2.0})
-    expect(words is not None, "Started with 2.2 m and 2.0 m, the node runs.")
+    error = start_error(workspace, {"safety_distance": 2.2, "slow_distance": 2.0})
+    expect(error is not None, "Started with 2.2 m and 2.0 m, the node runs.")

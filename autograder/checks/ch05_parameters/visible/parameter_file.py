@@ -1,11 +1,11 @@
-"""The fleet's file, read by ROS for each robot."""
+"""Checks of the fleet's parameter file, which ROS reads for each robot."""
 
 from __future__ import annotations
 
 from autograder.checking import Workspace, expect, group, hint
 from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import contract
-from autograder.checks.ch05_parameters.support.contract import OWN, fleet_values
+from autograder.checks.ch05_parameters.support.contract import PER_ROBOT, fleet_values
 from autograder.checks.ch05_parameters.support.robot import Robot, fleet_path
 
 check = group("files")
@@ -31,10 +31,10 @@ def test_file(workspace: Workspace) -> None:
 @hint("The key is the node's name, scout; its values stand under its own ros__parameters.")
 def test_robots(workspace: Workspace) -> None:
     """The robots scout and porter get their own values, and for the rest what every robot has."""
-    for name in OWN:
-        wanted = fleet_values(name)
+    for name in PER_ROBOT:
+        expected = fleet_values(name)
         with Robot.of_fleet(workspace, name) as robot:
-            wrong = parameters.differences(robot.parameters.values(*wanted), wanted)
+            wrong = parameters.differences(robot.parameters.values(*expected), expected)
         expect(not wrong, f"For the robot {name}, {'; '.join(wrong)}.")
 
 
@@ -43,5 +43,5 @@ def test_robots(workspace: Workspace) -> None:
 def test_once(workspace: Workspace) -> None:
     """What every robot has stands once: no entry of one robot sets slow_distance again."""
     file = parameters.read_file(fleet_path(workspace))
-    again = [name for name, values in file.items() if name != "/**" and "slow_distance" in values]
-    expect(not again, f"Under {', '.join(again)}, slow_distance stands again.")
+    repeated_names = [name for name, values in file.items() if name != "/**" and "slow_distance" in values]
+    expect(not repeated_names, f"Under {', '.join(repeated_names)}, slow_distance stands again.")

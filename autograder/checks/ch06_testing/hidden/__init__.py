@@ -1,5 +1,5 @@
-"""The hidden suite of 06_testing: do a student's tests pass on what is right, and fail on what is not?"""
+"""The hidden suite of 06_testing: a student's tests pass on right versions of a package, and fail on faulty ones."""
 
 PACKAGES = ("speed_guard",)
 MODULES = ("function", "node", "launch", "quality")
-READS = ("solutions/speed_guard",)  # the versions that tests meet are made from it
+READS = ("solutions/speed_guard",)  # the versions of the package are created from it

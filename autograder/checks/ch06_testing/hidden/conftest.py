@@ -1,4 +1,4 @@
-"""Fixtures of the suite: one examination for all checks."""
+"""The fixture of the suite: an examination that all checks share."""
 
 from __future__ import annotations
 
@@ -10,6 +10,6 @@ from autograder.checks.ch06_testing.hidden.examination import Examination
 
 @pytest.fixture(scope="session")
 def examination(request: pytest.FixtureRequest, workspace: Workspace, seed: int) -> Examination:
-    """The runs of the student's tests, as far as this session's checks ask for them."""
+    """The runs of the student's tests that the checks of this session need."""
     checks = (check_of(getattr(item, "function", None)) for item in request.session.items)
     return Examination(workspace, seed, frozenset(check.id for check in checks if check is not None))

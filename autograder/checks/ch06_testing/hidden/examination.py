@@ -1,9 +1,9 @@
-"""All runs of one student's tests: first on a right version, then on many, right and faulty, in a drawn order.
+"""All runs of a student's tests: first on a right version, then on right and faulty versions in a drawn order.
 
-Right versions and faulty ones are mixed and run alike, so that neither the time nor the circumstances of a run tell
-which it has. A test that does not pass on the first right version meets no other. If others object to another right
-version, all runs are made once more without these, on versions that are made anew: what is left has to pass on all
-right ones there, and then says something of the faulty ones.
+Right and faulty versions are mixed and run in the same way, so that a test cannot tell them apart by the time or the
+circumstances of its run. A test that fails on the first right version does not run again. If other tests fail on
+another right version, all runs are repeated without these tests, on newly created versions. Only if the remaining tests
+pass on all right versions does their failure on a faulty version count.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from functools import cached_property
 
 from autograder.checking import CheckFailed, CheckRow, Workspace, expect
 from autograder.checking.probes import colcon_test, student_test_reports, student_test_runs
-from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, broken, faults, reworded, right
+from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, bare, broken, faults, reworded, right
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
 from autograder.checks.ch06_testing.support.contract import (
     GIVEN_TESTS,
@@ -28,9 +28,9 @@ from autograder.checks.ch06_testing.support.contract import (
     PYTEST,
 )
 
-RIGHT = {LIMITS: "limits_right", GUARD: "guard_right", LAUNCH: "launch_right"}
+RIGHT_CHECKS = {LIMITS: "limits_right", GUARD: "guard_right", LAUNCH: "launch_right"}
 FILES = {
-    **{check: name for name, check in RIGHT.items()},
+    **{check: name for name, check in RIGHT_CHECKS.items()},
     **dict.fromkeys(
         ("limits_pass", "stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"), LIMITS
     ),
@@ -40,18 +40,18 @@ FILES = {
     "no_sleep": GUARD,
 }
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
-ALL_FILES = COLCON | {"as_given", ENDS}  # checks that ask for the tests of all three files
-RIGHTS = SECOND, REWORDED, BACKWARDS = "second", "reworded", "backwards"
-BRIEF = frozenset({"believes_distances_too_long"})  # faults that end within a second: a run that is held up misses them
-ORDERED = (LIMITS, GUARD)  # files whose tests have to pass in the opposite order, too
+ALL_FILES = COLCON | {"as_given", ENDS}  # checks that need the tests of all three files
+RIGHT_VERSIONS = SECOND, REWORDED, BARE, BACKWARDS = "second", "reworded", "bare", "backwards"
+BRIEF_FAULTS = frozenset({"believes_distances_too_long"})  # short-lived faults, which a slow run may miss
+ORDER_INDEPENDENT = (LIMITS, GUARD)  # files whose tests also have to pass in the opposite order
 
 
 @dataclass(frozen=True, kw_only=True)
 class Line(CheckRow):
-    """A line of the contract, for the check whether a student's tests object to versions that break it.
+    """A line of the contract. Its check tests whether a student's tests fail on versions that break the line.
 
     Attributes:
-        promise: the line, as the end of the check's sentence.
+        promise: the text of the line, which ends the check's message.
     """
 
     promise: str
@@ -59,178 +59,192 @@ class Line(CheckRow):
 
 
 class Examination:
-    """The runs of a submission's tests; each is made when it is first asked for, once.
+    """The runs of a submission's tests. Each takes place once, when a check first needs it.
 
     Args:
-        workspace: the student's.
-        seed: styles, obfuscations and the order of the runs are drawn from it.
-        checks: those that will ask; what only others would ask for is not run.
+        workspace: the student's workspace.
+        seed: determines styles, obfuscations and the order of the runs.
+        checks: the ids of the checks that need runs. Runs that only other checks need do not take place.
     """
 
     def __init__(self, workspace: Workspace, seed: int, checks: frozenset[str]) -> None:
         self._workspace = workspace
         self._seed = seed
         self._checks = checks
-        self._again: dict[str, dict[str, student_test_reports.Report]] = {}
+        self._reruns: dict[str, dict[str, student_test_reports.Report]] = {}
 
     @cached_property
     def source(self) -> student_test_reports.Source:
-        """The student's package, read once: later, `colcon test` lets its code write there."""
-        return student_test_runs.take(self._workspace, PACKAGE)
+        """The student's package, read before `colcon test` runs its code, which may change the folder."""
+        return student_test_runs.read_source(self._workspace, PACKAGE)
 
     @cached_property
     def trial(self) -> dict[str, student_test_reports.Report]:
-        """What the tests of each file say of a right version; those of the node are overheard."""
-        asked = {FILES[check] for check in self._checks if check in FILES}
-        wanted = {
+        """The reports of each file's tests on a right version. Network traffic of the node's tests is sniffed."""
+        needed_files = {FILES[check] for check in self._checks if check in FILES}
+        runs = {
             name: student_test_reports.TestRun(
-                (name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD, shown=True
+                (name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD, is_public=True
             )
             for name in MIN_TESTS
-            if (name in asked or self._checks & ALL_FILES) and name in self.source.tests
+            if (name in needed_files or self._checks & ALL_FILES) and name in self.source.tests
         }
-        return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
+        return dict(zip(runs, self._run(list(runs.values())), strict=True))
 
     @cached_property
     def runs(self) -> dict[tuple[str, str], student_test_reports.Report]:
-        """The other runs: by file, and what is special about the version or the run."""
-        wanted: dict[tuple[str, str], student_test_reports.TestRun] = {}
-        # What takes long comes first. Which file it is, a test knows anyway.
+        """The reports of all other runs, by file and purpose."""
+        runs: dict[tuple[str, str], student_test_reports.TestRun] = {}
+        # The slowest files come first. This order reveals nothing: a test knows its own file.
         for name in (name for name in reversed(MIN_TESTS) if is_usable(name, self.trial.get(name))):
-            mine = self._wanted(name, self.trial[name].failed)
-            whats = sorted(mine)
-            self._draw(name, "order").shuffle(whats)
-            wanted |= {(name, what): mine[what] for what in whats}
-        with ThreadPoolExecutor(1) as beside:  # colcon waits most of its time, too
+            file_runs = self._plan(name, self.trial[name].failed)
+            purposes = sorted(file_runs)
+            self._draw(name, "order").shuffle(purposes)
+            runs |= {(name, purpose): file_runs[purpose] for purpose in purposes}
+        with ThreadPoolExecutor(1) as executor:  # in parallel, because colcon spends most of its time waiting
             if self._checks & COLCON:
-                beside.submit(lambda: self.colcon)
-            return dict(zip(wanted, self._run(list(wanted.values())), strict=True))
+                executor.submit(lambda: self.colcon)
+            return dict(zip(runs, self._run(list(runs.values())), strict=True))
 
     @cached_property
     def colcon(self) -> student_test_reports.Report:
-        """What `colcon test` does with the student's own package."""
+        """The report of `colcon test` on the student's own package."""
         return colcon_test.colcon_test(self._workspace, PACKAGE)
 
-    def expect_right(self, name: str, *whats: str) -> None:
-        """Fail the check unless a file's tests pass on right versions in other words, and, if asked, backwards."""
+    def expect_right(self, name: str, *purposes: str) -> None:
+        """Fail the check unless a file's tests pass on other right versions, and in the runs with these purposes."""
         self.expect_usable(name)
-        for what in (SECOND, REWORDED, *whats):
-            if not self.runs[name, what].passed:
-                raise CheckFailed(describe_failure(name, self.runs[name, what], _WHERE[what]))
+        for purpose in (SECOND, REWORDED, *([BARE] if name == LIMITS else []), *purposes):
+            if not self.runs[name, purpose].passed:
+                raise CheckFailed(describe_failure(name, self.runs[name, purpose], _WHERE[purpose]))
 
     def expect_usable(self, name: str) -> None:
-        """Fail the check unless one of the student's tests in a file passes on the package as it is."""
-        said = f"No test of yours in {name} passes on the package as it is."
-        expect(is_usable(name, self.trial.get(name)), said)
+        """Fail the check unless at least one of the student's tests in a file passes on the package as it is."""
+        message = f"No test of yours in {name} passes on the package as it is."
+        expect(is_usable(name, self.trial.get(name)), message)
 
-    def expect_begun(self) -> None:
-        """Fail the check unless one of the student's tests in any file passes on the package as it is."""
-        begun = any(is_usable(name, report) for name, report in self.trial.items())
-        expect(begun, "No test of yours passes on the package as it is, in any of the three files.")
+    def expect_any_usable(self) -> None:
+        """Fail the check unless at least one of the student's tests in all files passes on the package as it is."""
+        is_any_usable = any(is_usable(name, report) for name, report in self.trial.items())
+        expect(is_any_usable, "No test of yours passes on the package as it is, in any of the three files.")
 
     def expect_objection(self, check: str, promise: str) -> None:
-        """Fail the check unless the tests of its file object to every fault that belongs to it.
+        """Fail the check unless the tests in the check's file fail on every fault that belongs to the check.
 
-        A run that has to be stopped objects, too; that it does not end by itself is another check's matter.
+        A run that has to be stopped counts as failed. Another check tests that runs end by themselves.
         """
         name = FILES[check]
         self.expect_usable(name)
-        mine = [fault for fault in faults() if fault.check == check]
-        found = [fault for fault in mine if self._detects(name, fault)]
+        relevant_faults = [fault for fault in faults() if fault.check == check]
+        detected_faults = [fault for fault in relevant_faults if self._detects(name, fault)]
         expect(
-            len(found) == len(mine),
-            f"{len(mine) - len(found)} of {len(mine)} faulty versions that break this line of the contract "
-            f"pass all tests in {name}: {promise}",
-            fraction=len(found) / len(mine) if len(found) < len(mine) else 0.0,
+            len(detected_faults) == len(relevant_faults),
+            f"{len(relevant_faults) - len(detected_faults)} of {len(relevant_faults)} faulty versions that break this "
+            f"line of the contract pass all tests in {name}: {promise}",
+            fraction=len(detected_faults) / len(relevant_faults)
+            if len(detected_faults) < len(relevant_faults)
+            else 0.0,
         )
 
-    def endless(self) -> list[str]:
+    def endless_files(self) -> list[str]:
         """Return the files whose tests had to be stopped on a faulty version."""
         ids = {fault.id for fault in faults()}
-        return sorted({n for (n, what), r in self.runs.items() if what in ids and r.timed_out})
+        return sorted({name for (name, purpose), run in self.runs.items() if purpose in ids and run.timed_out})
 
     def _detects(self, name: str, fault: Fault) -> bool:
-        if self._reports(name, self._judging(name)[fault.id]):
+        if self._is_detection(name, self._valid_reports(name)[fault.id]):
             return True
-        return fault.id in BRIEF and any(
-            self._reports(name, r) for r in self._run([self._wanted(name, self.trial[name].failed)[fault.id]])
+        return fault.id in BRIEF_FAULTS and any(
+            self._is_detection(name, report)
+            for report in self._run([self._plan(name, self.trial[name].failed)[fault.id]])
         )
 
-    def _judging(self, name: str) -> dict[str, student_test_reports.Report]:
-        """Return the runs of a file by which its tests are judged: those of all tests, or of those that are right.
+    def _valid_reports(self, name: str) -> dict[str, student_test_reports.Report]:
+        """Return a file's reports by purpose: of all its tests, or only of those that pass on right versions.
 
         Raises:
-            CheckFailed: they object to right versions, whatever is left of them.
+            CheckFailed: tests fail on right versions even after others were left out.
         """
-        runs = {what: report for (file, what), report in self.runs.items() if file == name}
-        if _objects_to_right(runs):
-            runs = self._again[name] = self._again.get(name) or self._run_again(name)
-        said = f"Tests in {name} fail on a right {PACKAGE}, too, so that it says nothing if they fail on a faulty one."
-        expect(not _objects_to_right(runs), said)
-        return runs
+        reports = {purpose: report for (file, purpose), report in self.runs.items() if file == name}
+        if _fails_on_right(reports):
+            reports = self._reruns[name] = self._reruns.get(name) or self._rerun(name)
+        message = (
+            f"Tests in {name} fail on a right {PACKAGE}, too, so that it says nothing if they fail on a faulty one."
+        )
+        expect(not _fails_on_right(reports), message)
+        return reports
 
-    def _run_again(self, name: str) -> dict[str, student_test_reports.Report]:
-        """Run a file once more without the tests that object to right versions, on other versions than before."""
+    def _rerun(self, name: str) -> dict[str, student_test_reports.Report]:
+        """Run a file on new versions, without the tests that fail on right ones; return the reports by purpose."""
         trial = self.trial[name]
-        failed = trial.failed
-        first = self._wanted(name, failed)
-        reports = self._run([replace(first[what], first_failure=False) for what in RIGHTS if what in first])
-        bad = tuple(sorted({*failed, *(test for report in reports for test in trial.failed_in(report))}))
-        said = (
+        failed_tests = trial.failed
+        first = self._plan(name, failed_tests)
+        reports = self._run(
+            [replace(first[purpose], exit_first=False) for purpose in RIGHT_VERSIONS if purpose in first]
+        )
+        deselected = tuple(sorted({*failed_tests, *(test for report in reports for test in trial.failed_in(report))}))
+        message = (
             f"No test of yours in {name} passes on every right {PACKAGE}, so that none says anything of a faulty one."
         )
-        expect(len(set(trial.executed) - set(bad)) > GIVEN_TESTS[name], said)
-        wanted = self._wanted(name, bad, "again")
-        whats = sorted(wanted)
-        self._draw(name, "order", "again").shuffle(whats)
-        return dict(zip(whats, self._run([wanted[what] for what in whats]), strict=True))
+        expect(len(set(trial.executed) - set(deselected)) > GIVEN_TESTS[name], message)
+        runs = self._plan(name, deselected, "again")
+        purposes = sorted(runs)
+        self._draw(name, "order", "again").shuffle(purposes)
+        return dict(zip(purposes, self._run([runs[purpose] for purpose in purposes]), strict=True))
 
-    def _reports(self, name: str, report: student_test_reports.Report) -> bool:
+    def _is_detection(self, name: str, report: student_test_reports.Report) -> bool:
         return report.timed_out or report.detects_fault(self.trial[name])
 
-    def _wanted(self, name: str, without: tuple[str, ...], *salt: str) -> dict[str, student_test_reports.TestRun]:
-        """Return the runs of a file that are asked for, by what is special about each.
+    def _plan(self, name: str, deselected: tuple[str, ...], *salt: str) -> dict[str, student_test_reports.TestRun]:
+        """Return the runs of a file that the checks need, by purpose.
 
         Args:
             name: the file.
-            without: tests that do not run.
-            salt: another one makes other versions.
+            deselected: tests that do not run.
+            salt: a different salt leads to different versions.
         """
-        wanted: dict[str, student_test_reports.TestRun] = {}
-        asked = [f for f in faults() if FILES[f.check] == name and self._checks & {f.check, ENDS}]
-        if asked or RIGHT[name] in self._checks:  # who objects to right versions says nothing of a faulty one
-            wanted[SECOND] = student_test_reports.TestRun(
-                (name,), right(STYLES[1], self._draw(name, SECOND, *salt)), first_failure=True
+        runs: dict[str, student_test_reports.TestRun] = {}
+        tested_faults = [
+            fault for fault in faults() if FILES[fault.check] == name and self._checks & {fault.check, ENDS}
+        ]
+        # A failure on a faulty version counts only for tests that pass on right versions.
+        if tested_faults or RIGHT_CHECKS[name] in self._checks:
+            runs[SECOND] = student_test_reports.TestRun(
+                (name,), right(STYLES[1], self._draw(name, SECOND, *salt)), exit_first=True
             )
-            # As much like the first version as faulty ones are: who objects to any other text is found out.
-            wanted[REWORDED] = student_test_reports.TestRun(
-                (name,), reworded(self._draw(name, REWORDED, *salt)), first_failure=True
-            )
-            if name in ORDERED:
+            # As similar to the first version as faulty ones are, to expose tests that fail on any change of the text.
+            similar_version = reworded(self._draw(name, REWORDED, *salt))
+            runs[REWORDED] = student_test_reports.TestRun((name,), similar_version, exit_first=True)
+            if name == LIMITS:
+                # The notebook requires approximate comparison for a function, and only advises it for a node.
+                version = bare(self._draw(name, BARE, *salt))
+                runs[BARE] = student_test_reports.TestRun((name,), version, exit_first=True)
+            if name in ORDER_INDEPENDENT:
                 version = right(STYLES[0], self._draw(name, BACKWARDS, *salt))
-                wanted[BACKWARDS] = student_test_reports.TestRun((name,), version, backwards=True, first_failure=True)
-        for fault in asked:
+                runs[BACKWARDS] = student_test_reports.TestRun((name,), version, backwards=True, exit_first=True)
+        for fault in tested_faults:
             draw = self._draw(name, fault.id, *salt)
-            wanted[fault.id] = student_test_reports.TestRun(
-                (name,), broken(fault, draw.choice(STYLES), draw), first_failure=True
+            runs[fault.id] = student_test_reports.TestRun(
+                (name,), broken(fault, draw.choice(STYLES), draw), exit_first=True
             )
-        return {what: replace(run, without=without) for what, run in wanted.items()}
+        return {purpose: replace(run, deselected=deselected) for purpose, run in runs.items()}
 
-    def _draw(self, *what: str) -> random.Random:
-        """Return what is drawn from for one purpose: the same, whatever else is run."""
-        return random.Random(":".join((str(self._seed), *what)))
+    def _draw(self, *purpose: str) -> random.Random:
+        """Return a random generator for one purpose, which does not depend on the other runs."""
+        return random.Random(":".join((str(self._seed), *purpose)))
 
-    def _run(self, wanted: Sequence[student_test_reports.TestRun]) -> list[student_test_reports.Report]:
-        return student_test_runs.run(self._workspace, self.source, wanted)
+    def _run(self, runs: Sequence[student_test_reports.TestRun]) -> list[student_test_reports.Report]:
+        return student_test_runs.run(self._workspace, self.source, runs)
 
 
-def _objects_to_right(runs: Mapping[str, student_test_reports.Report]) -> bool:
-    return any(not runs[what].passed for what in RIGHTS if what in runs)
+def _fails_on_right(reports: Mapping[str, student_test_reports.Report]) -> bool:
+    return any(not reports[purpose].passed for purpose in RIGHT_VERSIONS if purpose in reports)
 
 
 _OTHERWISE = "on a right speed_guard that is written differently: test the contract, no attributes and no inner names"
 _WHERE = {
     SECOND: _OTHERWISE,
     REWORDED: _OTHERWISE,
+    BARE: _OTHERWISE,
     BACKWARDS: "when the tests run in the opposite order: one test lives on what another has left behind",
 }

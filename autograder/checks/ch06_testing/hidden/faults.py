@@ -1,4 +1,4 @@
-"""The versions of speed_guard that a student's tests meet: right ones in two styles, and faulty ones of each."""
+"""The versions of speed_guard on which a student's tests run: right ones in two styles, and faulty ones in both."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Fault:
     """One way to break the contract.
 
     Attributes:
-        id: its name.
-        check: the check that it belongs to.
+        id: the fault's id.
+        check: the id of the check to which the fault belongs.
         file: the file that is changed.
-        edits: by style, what is found and what it becomes.
-        last: styles whose last match is changed; elsewhere there is just one.
+        edits: by style, the text to find and its replacement.
+        last: styles in which only the last match is replaced; in the other styles, there is only one match.
     """
 
     id: str
@@ -45,7 +45,7 @@ def faults() -> tuple[Fault, ...]:
 
 @cache
 def style(name: str) -> versions.Version:
-    """Return the right version in a style."""
+    """Return the right version in this style."""
     first = versions.read(solution_path(PACKAGE), SCRIPTS)
     if name == STYLES[0]:
         return first
@@ -53,26 +53,45 @@ def style(name: str) -> versions.Version:
 
 
 def right(name: str, draw: random.Random) -> versions.Version:
-    """Return a right version in a style, obfuscated."""
+    """Return an obfuscated right version in this style."""
     return versions.obfuscate(style(name), draw.getrandbits(32))
 
 
 def reworded(draw: random.Random) -> versions.Version:
-    """Return a right version of the first style in which one thing in each file is said otherwise, obfuscated."""
+    """Return an obfuscated right version in the first style, with one expression of each file reworded."""
+    drawn_edits = _right_edits()["drawn"]
+    return _edited({name: [draw.choice(edits)] for name, edits in drawn_edits.items()}, "in other words", draw)
+
+
+def bare(draw: random.Random) -> versions.Version:
+    """Return an obfuscated right version in the first style whose safe_speed does no more than its contract requires.
+
+    Its computed speeds have a rounding error, and its exception has no text.
+    """
+    return _edited(_right_edits()["bare"], "without more than its contract", draw)
+
+
+def _right_edits() -> dict[str, dict[str, list[dict[str, str]]]]:
+    edits: dict[str, dict[str, list[dict[str, str]]]] = yaml.safe_load((FOLDER / "reworded.yaml").read_text())
+    return edits
+
+
+def _edited(edits: dict[str, list[dict[str, str]]], label: str, draw: random.Random) -> versions.Version:
     files = dict(style(STYLES[0]).files)
-    for name, edits in yaml.safe_load((FOLDER / "reworded.yaml").read_text()).items():
-        files[name] = _edited(files[name], draw.choice(edits), f"{name} in other words")
+    for name, file_edits in edits.items():
+        for edit in file_edits:
+            files[name] = _edit(files[name], edit, f"{name} {label}")
     return versions.obfuscate(versions.Version(files, SCRIPTS), draw.getrandbits(32))
 
 
-def _edited(text: str, edit: dict[str, str], what: str) -> str:
+def _edit(text: str, edit: dict[str, str], label: str) -> str:
     if text.count(edit["find"]) != 1:
-        raise GraderError(f"{what}: {edit['find']!r} stands {text.count(edit['find'])} times in the file")
+        raise GraderError(f"{label}: {edit['find']!r} stands {text.count(edit['find'])} times in the file")
     return text.replace(edit["find"], edit["replace"])
 
 
 def broken(fault: Fault, name: str, draw: random.Random) -> versions.Version:
-    """Return a faulty version in a style, obfuscated.
+    """Return an obfuscated faulty version in this style.
 
     Raises:
         GraderError: the fault no longer fits the style's text.

@@ -1,4 +1,4 @@
-"""Tests of the pure function: do they notice when safe_speed breaks its contract?"""
+"""Checks that tests of the pure function fail if safe_speed breaks its contract."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import LIMITS
 
 check = group("function")
-RIGHT = ("limits_right",)
+RIGHT_CHECK = ("limits_right",)
 
 
 @check(points=2, covers="limits-pass", doc=contract.PYTEST)
@@ -126,7 +126,7 @@ LINES = (
 )
 
 
-@check_each_row(group("function", after=RIGHT), LINES)
+@check_each_row(group("function", after=RIGHT_CHECK), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
-    """The tests of the file object to every version that breaks the line."""
+    """Fail the check unless the tests of the file fail on every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

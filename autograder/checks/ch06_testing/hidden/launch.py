@@ -1,4 +1,4 @@
-"""The integration test: does it notice when what is launched is not what was promised?"""
+"""Checks that the integration test fails if the launched system breaks the contract."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import LAUNCH
 
 check = group("launch", doc=contract.INTEGRATION)
-RIGHT = ("launch_right",)
+RIGHT_CHECK = ("launch_right",)
 
 
 @check(points=2, covers="write-launch-test")
@@ -57,7 +57,7 @@ LINES = (
 )
 
 
-@check_each_row(group("launch", after=RIGHT), LINES)
+@check_each_row(group("launch", after=RIGHT_CHECK), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
-    """The tests of the file object to every version that breaks the line."""
+    """Fail the check unless the tests of the file fail on every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

@@ -1,4 +1,4 @@
-"""Tests of the node: do they notice when speed_guard breaks its contract, and do they keep to themselves?"""
+"""Checks that tests of the node fail if speed_guard breaks its contract, and that they are isolated."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from autograder.checks.ch06_testing.support.assertions import expect_passed
 from autograder.checks.ch06_testing.support.contract import GUARD
 
 check = group("node")
-RIGHT = ("guard_right",)
+RIGHT_CHECK = ("guard_right",)
 
 
 @check(points=2, covers="guard-pass", doc=contract.PYTEST)
@@ -27,7 +27,7 @@ def test_guard_right(examination: Examination) -> None:
     examination.expect_right(GUARD, BACKWARDS)
 
 
-@check(points=2, covers="own-domain", after=RIGHT, doc=contract.DOMAIN)
+@check(points=2, covers="own-domain", after=RIGHT_CHECK, doc=contract.DOMAIN)
 @hint("Without a domain of its own, a context listens to whoever is in the default one.")
 @hint("rclpy.init(context=context, domain_id=...): a number that another test process does not use.")
 def test_alone(examination: Examination) -> None:
@@ -39,18 +39,18 @@ def test_alone(examination: Examination) -> None:
     )
 
 
-@check(points=1, covers="guard-pass", after=RIGHT, doc=contract.FIXTURES)
+@check(points=1, covers="guard-pass", after=RIGHT_CHECK, doc=contract.FIXTURES)
 @hint("What stands after yield in a fixture is done in any case, also when the test fails.")
 @hint("Destroy each node, then rclpy.try_shutdown(context=context).")
 def test_nothing_left(examination: Examination) -> None:
     """They leave no node and no context behind."""
     examination.expect_usable(GUARD)
     trial = examination.trial[GUARD]
-    said = f"After the last test in {GUARD}, {trial.left} network sockets of ROS contexts were still open."
-    expect(trial.left == 0, said)
-    # The end of a context that was dropped without a shutdown closes its sockets, not what rclpy keeps for it.
-    said = f"After the last test in {GUARD}, ROS's log file was still open: a context was not shut down."
-    expect(not trial.is_logging, said)
+    message = f"After the last test in {GUARD}, {trial.open_sockets} network sockets of ROS contexts were still open."
+    expect(trial.open_sockets == 0, message)
+    # A context that is garbage-collected without a shutdown closes its sockets, but not the log file.
+    message = f"After the last test in {GUARD}, ROS's log file was still open: a context was not shut down."
+    expect(not trial.is_logging, message)
 
 
 LINES = (
@@ -165,7 +165,7 @@ LINES = (
 )
 
 
-@check_each_row(group("node", after=RIGHT), LINES)
+@check_each_row(group("node", after=RIGHT_CHECK), LINES)
 def expect_objection(line: Line, examination: Examination) -> None:
-    """The tests of the file object to every version that breaks the line."""
+    """Fail the check unless the tests of the file fail on every version that breaks the line."""
     examination.expect_objection(line.id, line.promise)

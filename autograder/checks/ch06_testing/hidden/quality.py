@@ -1,4 +1,4 @@
-"""How the tests are made: they wait without sleeping, they end, and colcon runs them, the linters among them."""
+"""Checks of the tests' quality: they wait without sleeping, they end, and colcon runs them and the linters."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, MIN_TESTS, PACKAGE
 
 check = group("craft")
-SHARED = ("launch", "config")  # folders of which setup.py installs the files
-GIVEN = (PACKAGE, *SHARED)  # its folders; a student writes test/, and may write setup.py anew
+SHARE_FOLDERS = ("launch", "config")  # folders whose files setup.py installs
+GIVEN_FOLDERS = (PACKAGE, *SHARE_FOLDERS)  # folders with given files; students write test/, and may replace setup.py
 LINTERS = ("test_flake8", "test_pep257")
 EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use pytest, with every version of setuptools."
 
@@ -22,14 +22,16 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
 @hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
 def test_as_given(workspace: Workspace, examination: Examination) -> None:
     """The module, the launch file and the configuration of the package are as they were given."""
-    examination.expect_begun()
-    given = style(STYLES[0]).files
-    texts = {name: text.encode() for name, text in given.items()}
-    changed = given_files.changed_files(examination.source.files, texts, GIVEN)
-    expect(not changed, f"{' and '.join(changed)} of your package is not as it was given.")
-    # The runs install each version themselves, so only this sees what the student's own setup.py leaves out.
-    installation = installed.look(workspace.install, PACKAGE)
-    missing = [name for name in given if name.split("/")[0] in SHARED and installation.read(name) is None]
+    examination.expect_any_usable()
+    reference_files = style(STYLES[0]).files
+    texts = {name: text.encode() for name, text in reference_files.items()}
+    changed_names = given_files.changed_files(examination.source.files, texts, GIVEN_FOLDERS)
+    expect(not changed_names, f"{' and '.join(changed_names)} of your package is not as it was given.")
+    # The runs install each version without setup.py, so only this check finds files that setup.py does not install.
+    installation = installed.inspect_package(workspace.install, PACKAGE)
+    missing = [
+        name for name in reference_files if name.split("/")[0] in SHARE_FOLDERS and installation.read(name) is None
+    ]
     expect(
         not missing,
         f"{' and '.join(missing)} of your package is not installed in share/{PACKAGE}: the given setup.py names it "
@@ -53,9 +55,10 @@ def test_ends(examination: Examination) -> None:
     """The tests end by themselves on a node that never answers."""
     for name in (GUARD, LAUNCH):
         examination.expect_usable(name)
-    endless = examination.endless()
+    endless_files = examination.endless_files()
     expect(
-        not endless, f"On a faulty version, the tests in {' and '.join(endless)} did not end, and had to be stopped."
+        not endless_files,
+        f"On a faulty version, the tests in {' and '.join(endless_files)} did not end, and had to be stopped.",
     )
 
 
@@ -63,7 +66,7 @@ def test_ends(examination: Examination) -> None:
 @hint("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS)
 def test_colcon(examination: Examination) -> None:
     """`colcon test` runs the tests of all three files."""
-    examination.expect_begun()
+    examination.expect_any_usable()
     report = examination.colcon
     verdicts = report.claims.verdicts
     colcon_test.expect_ended(report)
@@ -79,20 +82,20 @@ def test_colcon(examination: Examination) -> None:
 @hint("Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.")
 def test_linters(workspace: Workspace, examination: Examination) -> None:
     """The linters flake8 and pep257 run as tests, and find nothing."""
-    examination.expect_begun()
+    examination.expect_any_usable()
     verdicts = examination.colcon.claims.verdicts
-    ran = {name: verdict for name, verdict in verdicts.items() if name.partition("::")[2] in LINTERS}
+    linter_verdicts = {name: verdict for name, verdict in verdicts.items() if name.partition("::")[2] in LINTERS}
     names = {
         name.partition("::")[2]
-        for name, verdict in ran.items()
+        for name, verdict in linter_verdicts.items()
         if verdict is not student_test_reports.ClaimedOutcome.SKIPPED
     }
     missing = [name for name in LINTERS if name not in names]
     expect(not missing, f"`colcon test` did not run {' and '.join(missing)}.")
-    bad = [
+    failed_linters = [
         name.partition("::")[2]
-        for name, verdict in ran.items()
+        for name, verdict in linter_verdicts.items()
         if verdict is not student_test_reports.ClaimedOutcome.PASSED
     ]
-    expect(not bad, f"{' and '.join(bad)} found something in the package.", fraction=0.5)
-    linters.expect_tidy(workspace, examination.source, ran, fraction=0.5)
+    expect(not failed_linters, f"{' and '.join(failed_linters)} found something in the package.", fraction=0.5)
+    linters.expect_tidy(workspace, examination.source, linter_verdicts, fraction=0.5)

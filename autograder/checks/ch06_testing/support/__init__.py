@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 06_testing share."""
+"""Code that the visible and the hidden checks of 06_testing share."""

@@ -1,4 +1,4 @@
-"""Assertions on runs of a student's tests, and what a run that failed is called in the student's words."""
+"""Assertions on runs of a student's tests, and descriptions of failed runs for the student."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, MIN_TES
 from autograder.checks.ch06_testing.support.sleeping import sleeps
 
 UNFINISHED = "still to be written"
-
-
-MAX_FAILED = 50  # tests: who has more that fail has nothing to judge others by
+MAX_FAILED = 50  # the largest number of failed tests with which a file is still used
 
 
 def is_usable(name: str, report: student_test_reports.Report | None) -> bool:
-    """Whether more tests of a file than the given ones pass on a right version, so that they tell others apart."""
+    """Return whether more tests of a file than the given ones pass on a right version.
+
+    Only then can the file tell right and faulty versions apart.
+    """
     if report is None or report.status not in (0, 1) or len(report.failed) > MAX_FAILED:
         return False
     return len(set(report.executed) - set(report.failed)) > GIVEN_TESTS[name]
 
 
 def expect_passed(name: str, report: student_test_reports.Report | None) -> None:
-    """Fail the check unless a file's tests pass on the package as it is, and are enough."""
+    """Fail the check unless a file has enough tests, and all pass on the package as it is."""
     if report is None:
         raise CheckFailed(f"There is no test/{name} in the package {PACKAGE}.")
     if not report.passed:
@@ -36,24 +37,24 @@ def expect_passed(name: str, report: student_test_reports.Report | None) -> None
 
 def expect_no_sleep(source: student_test_reports.Source) -> None:
     """Fail the check if a test file sleeps."""
-    python = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
-    found = [f"{name}, line {line}" for name, data in python.items() for line in sleeps(data)]
-    expect(not found, f"There is a sleep in {'; '.join(found[:3])}.")
+    python_files = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
+    sleep_lines = [f"{name}, line {line}" for name, data in python_files.items() for line in sleeps(data)]
+    expect(not sleep_lines, f"There is a sleep in {'; '.join(sleep_lines[:3])}.")
 
 
 def describe_failure(name: str, report: student_test_reports.Report, where: str) -> str:
-    """Say why a run that should have passed did not.
+    """Describe why a run that should have passed did not.
 
     Args:
         name: the test file.
-        report: its run. What a test said is quoted only if the report is not closed.
-        where: the version, or the circumstances.
+        report: the report of its run. Messages of tests are quoted only if the report is not closed.
+        where: the version or the circumstances, such as "on the package as it is".
     """
     if report.timed_out:
         return f"The tests in {name} do not end {where}."
     if report.failed:
         test = student_test_reports.shown_name(report.failed[0])
-        if report.known is not None:
+        if report.source_tests is not None:
             return f"{test if test != student_test_reports.UNNAMED else 'One test'} in {name} fails {where}."
         message = report.claims.messages[report.failed[0]]
         if UNFINISHED in message:
@@ -63,6 +64,6 @@ def describe_failure(name: str, report: student_test_reports.Report, where: str)
     if report.status in (0, 5):
         return f"No test in {name} ran {where}."
     if report.status is None:
-        why = report.exit_reason.value.replace("_", " ") if report.exit_reason else "no report"
-        return f"The tests in {name} ended {where} before pytest could say how they went: {why}."
+        reason = report.exit_reason.value.replace("_", " ") if report.exit_reason else "no report"
+        return f"The tests in {name} ended {where} before pytest could say how they went: {reason}."
     return f"pytest cannot run {name} {where}; it ended with exit status {report.status}."

@@ -1,12 +1,12 @@
-"""The contract of the exercises in names and numbers, and the pages that the checks refer to."""
+"""Names and numbers in the exercises' contract, and links and hints that several checks use."""
 
 from __future__ import annotations
 
 PACKAGE = "speed_guard"
 SCRIPTS = {"speed_guard": "speed_guard.guard"}
 LIMITS, GUARD, LAUNCH = "test_limits.py", "test_guard.py", "test_launch.py"
-MIN_TESTS = {LIMITS: 6, GUARD: 5, LAUNCH: 1}  # tests that have to run
-GIVEN_TESTS = {LIMITS: 4, GUARD: 0, LAUNCH: 0}  # tests that the notebook has written
+MIN_TESTS = {LIMITS: 6, GUARD: 5, LAUNCH: 1}  # how many tests a file needs at least
+GIVEN_TESTS = {LIMITS: 4, GUARD: 0, LAUNCH: 0}  # how many tests the notebook provides
 
 PYTEST = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Testing/Python.html"
 INTEGRATION = "https://docs.ros.org/en/jazzy/Tutorials/Intermediate/Testing/Integration.html"

@@ -1,4 +1,4 @@
-"""The student's tests on the package as it is, and on mutants of the course's own."""
+"""Runs the student's tests on the package as it is, and on mutants that the course provides."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMIT
 Reports = dict[tuple[str, str], student_test_reports.Report]
 GUARD_FILE = "speed_guard/guard.py"
 
-# Mutants that differ much from what is right. The hidden ones differ by a line.
+# Mutants that differ a lot from the right package. The hidden ones differ in one line each.
 LETS_ALL_PASS = {"speed_guard/limits.py": "def safe_speed(wanted, *distances, **more_distances):\n    return wanted\n"}
 GOES_BLIND = {
     "speed_guard/limits.py": """import math
@@ -42,7 +42,7 @@ def safe_speed(wanted, distance, stop_distance=0.5, slow_distance=1.5):
     return wanted if distance >= slow_distance else wanted / 2.0
 """
 }
-# These two are added to the end of guard.py.
+# The next two are appended to guard.py.
 NEVER_FORGETS = """
 
 _answer = SpeedGuard.on_command
@@ -83,12 +83,12 @@ TURNED, TRUSTING, UNCONFIGURED = "turned", "trusting", "unconfigured"
 @pytest.fixture(scope="module")
 def source(workspace: Workspace) -> student_test_reports.Source:
     """The student's package."""
-    return student_test_runs.take(workspace, PACKAGE)
+    return student_test_runs.read_source(workspace, PACKAGE)
 
 
 @pytest.fixture(scope="module")
 def reports(workspace: Workspace, source: student_test_reports.Source) -> Reports:
-    """What the tests of each file say of the package as it is, and of its mutants."""
+    """The reports of each file's tests on the package as it is, and on its mutants."""
     files = {name: data.decode(errors="replace") for name, data in source.files.items() if not name.startswith("test/")}
     mutants: dict[tuple[str, str], dict[str, str]] = {
         (LAUNCH, UNCONFIGURED): WITHOUT_CONFIGURATION,
@@ -99,18 +99,18 @@ def reports(workspace: Workspace, source: student_test_reports.Source) -> Report
         (LIMITS, BLIND): GOES_BLIND,
         (LIMITS, HALF): HALF_IN_BETWEEN,
     }
-    wanted = {
+    runs = {
         (name, RIGHT): student_test_reports.TestRun(
-            (name,), versions.Version(files, SCRIPTS), sniffed=name == GUARD, shown=True
+            (name,), versions.Version(files, SCRIPTS), sniffed=name == GUARD, is_public=True
         )
         for name in MIN_TESTS
     }
-    for (name, what), changed in mutants.items():
-        wanted[name, what] = student_test_reports.TestRun(
-            (name,), versions.Version({**files, **changed}, SCRIPTS), first_failure=True, shown=True
+    for (name, mutant), changed_files in mutants.items():
+        runs[name, mutant] = student_test_reports.TestRun(
+            (name,), versions.Version({**files, **changed_files}, SCRIPTS), exit_first=True, is_public=True
         )
-    wanted = {key: one for key, one in wanted.items() if key[0] in source.tests}
-    return dict(zip(wanted, student_test_runs.run(workspace, source, list(wanted.values())), strict=True))
+    runs = {key: run for key, run in runs.items() if key[0] in source.tests}
+    return dict(zip(runs, student_test_runs.run(workspace, source, list(runs.values())), strict=True))
 
 
 @check(points=1, covers="limits-pass", group="function", doc=contract.PYTEST)
@@ -203,10 +203,10 @@ def test_launch_notice(reports: Reports) -> None:
 @hint("Run `ament_flake8` and `ament_pep257` in ws/src/speed_guard: they name file and line.")
 def test_linters(workspace: Workspace, source: student_test_reports.Source) -> None:
     """The linters flake8 and pep257 find nothing in the package and in your tests."""
-    found = linters.objections(workspace, source)
-    expect(not found, "; ".join(f"{name}: {finding}" for name, finding in found.items()))
+    findings = linters.lint(workspace, source)
+    expect(not findings, "; ".join(f"{name}: {finding}" for name, finding in findings.items()))
 
 
-def _expect_objection(reports: Reports, name: str, what: str) -> None:
-    objects = reports[name, what].detects_fault(reports[name, RIGHT])
-    expect(objects, f"All tests in {name} pass on that mutant, too.")
+def _expect_objection(reports: Reports, name: str, mutant: str) -> None:
+    is_detected = reports[name, mutant].detects_fault(reports[name, RIGHT])
+    expect(is_detected, f"All tests in {name} pass on that mutant, too.")

@@ -1,42 +1,54 @@
-"""Robust nodes whose generator has a bug: what becomes of its exception in timer_callback."""
+"""Calls a robust node whose generator raises an exception in timer_callback."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from autograder.checking import Workspace
 from autograder.checking.probes import calls, parameters
 from autograder.checks.ch07_best_practices.support.contract import ROBUST
 
-BUGS = ("AttributeError", "RuntimeError", "OSError", "ValueError")  # OSError is the base class of the given SensorError
+# RuntimeError is the base class of SensorError. OSError and its subclasses are what a real device raises.
+PLAIN_BUGS = ("AttributeError", "RuntimeError")
+BUGS = (
+    *PLAIN_BUGS,
+    *("OSError", "TimeoutError", "ConnectionError", "ValueError", "TypeError", "KeyError", "IndexError"),
+    *("ZeroDivisionError", "EOFError", "AssertionError", "NotImplementedError"),
+)
 
 
-def with_bugs(
-    workspace: Workspace,
-) -> tuple[dict[str, tuple[calls.StepResult, calls.StepResult, calls.StepResult]], calls.StepResult]:
-    """Make a node for each bug, with a generator that has it, and call its timer_callback.
+@dataclass(frozen=True)
+class BugResults:
+    """The results of creating a node, of reading its namespace, and of its callback for each bug.
 
-    Returns:
-        By bug, what came of making the node, of the call, and of asking for its namespace. Then what came of the call
-        of a node that has the last bug's generator and a seed.
+    Attributes:
+        seeded_callback: the callback's result, with the last bug, for a node that has a seed and the same generator.
     """
+
+    creation: calls.StepResult
+    namespace: calls.StepResult
+    callbacks: dict[str, calls.StepResult]
+    seeded_callback: calls.StepResult
+
+
+def call_with_bugs(workspace: Workspace) -> BugResults:
+    """Create a node with a mock generator, and call the node's timer_callback once for each bug."""
     plan = calls.Plan()
     add = plan.add
     add(calls.call("init", module="rclpy"))
-
-    numbers = {}
+    generator = add(calls.call("Mock", module="unittest.mock"))
+    number = calls.result_of(add(calls.attribute("random", on=generator)))
+    node = add(calls.call("RobustNode", generator=calls.result_of(generator), namespace="hall"))
+    namespace = add(calls.call("get_namespace", on=node))
+    callback_steps = {}
     for bug in BUGS:
-        if bug == "AttributeError":  # a generator without random()
-            generator = add(calls.call("Mock", module="unittest.mock", spec=[]))
-        else:
-            effect: dict[str, Any] = {
-                "random.side_effect": calls.made(add(calls.call(bug, "a bug", module="builtins")))
-            }
-            generator = add(calls.call("Mock", module="unittest.mock", **effect))
-        node = add(calls.call("RobustNode", generator=calls.made(generator), namespace="hall"))
-        numbers[bug] = node, add(calls.callback("timer_callback", on=node)), add(calls.call("get_namespace", on=node))
+        error: Any = calls.result_of(add(calls.call(bug, "a bug", module="builtins")))
+        add(calls.call("setattr", number, "side_effect", error, module="builtins"))
+        callback_steps[bug] = add(calls.callback("timer_callback", on=node))
     seed = ["--ros-args", *parameters.override_arguments({"seed": 5})]
-    node = add(calls.call("RobustNode", generator=calls.made(generator), cli_args=seed))
-    add(calls.callback("timer_callback", on=node))
+    other = add(calls.call("RobustNode", generator=calls.result_of(generator), cli_args=seed))
+    add(calls.callback("timer_callback", on=other))
     results = calls.calls(workspace, ROBUST, *plan.steps, network=True)
-    return {bug: (results[a], results[b], results[c]) for bug, (a, b, c) in numbers.items()}, results[-1]
+    callback_results = {bug: results[step] for bug, step in callback_steps.items()}
+    return BugResults(results[node], results[namespace], callback_results, results[-1])

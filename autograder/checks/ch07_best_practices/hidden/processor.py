@@ -1,16 +1,19 @@
-"""The sensor processor: what comes out for what goes in."""
+"""Checks of the sensor processor: its topics, its filtered scans, its means and its warnings."""
 
 from __future__ import annotations
 
 import random
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 from math import inf, isclose, isnan, nan
-from statistics import fmean
+from operator import attrgetter
 
+from hypothesis import strategies as st
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 
-from autograder.checking import SCAN_SECONDS, Workspace, expect, group, hint
+from autograder.checking import LOCKSTEP, SCAN_SECONDS, Workspace, expect, group, hint
 from autograder.checking.probes import calls, namespaces, node_callbacks, qos
 from autograder.checks.ch07_best_practices.support.contract import (
     HISTORY,
@@ -18,16 +21,28 @@ from autograder.checks.ch07_best_practices.support.contract import (
     PACKAGE,
     PROCESSOR,
     QOS,
-    SILENT_SECONDS,
-    TOLERANCE,
     UTILS,
 )
-from autograder.checks.ch07_best_practices.support.robot import Processor, logged, scan
+from autograder.checks.ch07_best_practices.support.drawn_readings import (
+    BLIND_SCANS,
+    GOOD_SCANS,
+    PLAIN_PHANTOMS,
+    Readings,
+    Series,
+    averages,
+    draw_cases,
+    expect_all,
+    mean_of,
+    other_lidars,
+    scans_of,
+)
+from autograder.checks.ch07_best_practices.support.robot import Processor, messages, scan, scan_of
+from autograder.checks.ch07_best_practices.support.warning_record import WarningRecord
 
 check = group("processor")
-SECONDS = 20.0
-ALTERNATIONS = 15  # blind scans with a good one after each
-SLOW, SLOW_SECONDS = 9, 0.5  # scans of a slow lidar, and s between two of them
+FAST_SECONDS = 0.04  # s between two scans of a fast lidar
+GAPS = (0.05, 0.1, 0.2, 0.3, 0.5)  # s between two scans: of fast lidars and of slow ones
+STRETCH_SECONDS = 3.0  # s with scans that have no distance for the same reason
 
 
 @check(points=1, covers=("scan", "scan-filtered", "mean-topic", "processor-name"))
@@ -46,19 +61,23 @@ def test_endpoints(processor: Processor) -> None:
 @check(points=1, covers=("scan", "scan-filtered", "mean-topic"), after=("endpoints",), doc=QOS)
 @hint("qos_profile_sensor_data instead of 10, on both ends of the scans.", "A lidar publishes best-effort.")
 def test_sensor_qos(processor: Processor) -> None:
-    """It asks for scans as a lidar offers them, and offers its own likewise: best effort; not so the mean."""
-    taken = processor.node.get_subscriptions_info_by_topic("/scan")
-    expect(bool(taken), "It does not subscribe to scan.")
-    reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in taken)
-    expect(not reliable, "Its scan subscription asks for reliable delivery, which a lidar does not offer.")
-    offered = processor.node.get_publishers_info_by_topic("/scan_filtered")
-    expect(bool(offered), "It does not publish scan_filtered.")
-    reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in offered)
-    expect(not reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
-    durable = any(peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in (*taken, *offered))
-    expect(not durable, "scan or scan_filtered is transient local, and qos_profile_sensor_data is not.", fraction=0.5)
-    differs = qos.non_default_qos(processor.node, "/mean_distance")
-    expect(not differs, differs, fraction=0.75)
+    """It subscribes to and publishes scans with best-effort QoS, as a lidar does. The mean has the default QoS."""
+    subscriptions = processor.node.get_subscriptions_info_by_topic("/scan")
+    expect(bool(subscriptions), "It does not subscribe to scan.")
+    is_reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in subscriptions)
+    expect(not is_reliable, "Its scan subscription asks for reliable delivery, which a lidar does not offer.")
+    publishers = processor.node.get_publishers_info_by_topic("/scan_filtered")
+    expect(bool(publishers), "It does not publish scan_filtered.")
+    is_reliable = any(peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for peer in publishers)
+    expect(not is_reliable, "scan_filtered is offered reliably: a slow listener would hold the node up.", fraction=0.5)
+    is_durable = any(
+        peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for peer in (*subscriptions, *publishers)
+    )
+    expect(
+        not is_durable, "scan or scan_filtered is transient local, and qos_profile_sensor_data is not.", fraction=0.5
+    )
+    difference = qos.non_default_qos(processor.node, "/mean_distance")
+    expect(not difference, difference, fraction=0.75)
 
 
 @check(points=1, covers="relative", after=("endpoints",))
@@ -66,10 +85,10 @@ def test_sensor_qos(processor: Processor) -> None:
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
     """The topic names of sensor_processor are relative: in the namespace /a, scan is /a/scan."""
-    left = namespaces.missing_in_namespace(
+    message = namespaces.missing_in_namespace(
         workspace, PACKAGE, "sensor_processor", ("scan", "scan_filtered", "mean_distance")
     )
-    expect(not left, left)
+    expect(not message, message)
 
 
 @check(points=2, covers=("scan-filtered", "other-fields"), after=("endpoints",))
@@ -77,178 +96,187 @@ def test_relative(workspace: Workspace) -> None:
 def test_filtered(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
     """A scan comes out with its phantoms masked, by the lidar's own limits."""
     far = round(draw.uniform(11.0, 15.0), 1)
-    sent, low, high = [1.0, 0.0, inf, nan, far, -inf, far + 5.0], 0.05, far + 1.0
-    (filtered, _) = processor.show(scan(sent, range_min=low, range_max=high))
-    expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out.")
-    got, wanted = list(filtered[0].ranges), [1.0, nan, inf, nan, far, -inf, nan]
-    right = _all_alike(got, wanted) or _all_alike(got, _masked(workspace, sent, low, high))
-    expect(right, f"{sent} ({low} to {high} m) came out as {[round(r, 3) for r in got]}.")
+    plain = Readings((1.0, 0.0, inf, nan, far, -inf, far + 5.0), 0.05, far + 1.0)
+    others = draw_cases((other_lidars(at_limits=False) | other_lidars(at_limits=True)).map(_with_infinities), draw, 20)
+    _expect_masked(workspace, processor, [plain], fraction=0.0)
+    _expect_masked(workspace, processor, others, fraction=0.5)
 
 
 @check(points=1, covers=("all-else", "other-fields"), after=("filtered",))
 @hint("Publish the message that came, with other ranges.", "A new LaserScan() has no header and no angles.")
-def test_rest_untouched(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
+def test_rest_untouched(processor: Processor, draw: random.Random) -> None:
     """Header, angles, times, limits and intensities come out as they went in."""
-    sent = scan([1.0, 0.06, 9.0])  # of which the limits of the scan in test_filtered would mask none
-    sent.header.frame_id = f"/Laser_{draw.randint(1, 9)} "  # unusual, so that any change of it is seen
-    sent.header.stamp.sec = draw.randint(1, 1000)
-    sent.angle_min, sent.intensities = -1.5, [5.0, 6.0, 7.0]
-    sent.time_increment = draw.uniform(0.01, 0.03)
-    filtered, _ = processor.show(sent)
-    expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out.")
-    for field in (name for name in sent.get_fields_and_field_types() if name != "ranges"):
-        got, wanted = getattr(filtered[0], field), getattr(sent, field)
-        alike = _alike(got, wanted) if isinstance(wanted, float) else got == wanted
-        fraction = 0.5 if field == "intensities" else 0.0
-        expect(alike, f"{field} went in as {wanted} and came out as {got}.", fraction=fraction)
-    got = list(filtered[0].ranges)
-    shown = (
-        f"After a scan with other limits, [1.0, 0.06, 9.0] (0.12 to 3.5 m) came out as {[round(r, 3) for r in got]}."
-    )
-    right = _all_alike(got, [1.0, nan, nan]) or _all_alike(got, _masked(workspace, [1.0, 0.06, 9.0], 0.12, 3.5))
-    expect(right, shown, fraction=0.5)
+    with_phantoms = scan([0.05, 1.0, nan, 9.0])
+    with_phantoms.intensities = [10.0, 20.0, 30.0, 40.0]
+    sent_scans = [*draw_cases(messages(), draw, 25), with_phantoms]
+    filtered, _ = processor.send_scans(*sent_scans)
+    expect(len(filtered) == len(sent_scans), f"{len(sent_scans)} scans went in, {len(filtered)} came out.")
+
+    def judge(pair: tuple[LaserScan, LaserScan]) -> None:
+        before, after = pair
+        others = [name for name in before.get_fields_and_field_types() if name not in ("header", "ranges")]
+        for field in ("header.frame_id", "header.stamp", *others):
+            actual, expected = attrgetter(field)(after), attrgetter(field)(before)
+            is_equal = _close(actual, expected) if isinstance(expected, float) else actual == expected
+            fraction = 0.5 if field == "intensities" else 0.0
+            expect(is_equal, f"{field} went in as {expected!r} and came out as {actual!r}.", fraction=fraction)
+
+    expect_all(zip(sent_scans, filtered, strict=True), judge)
 
 
 @check(points=2, covers=("mean-of-ten", "mean-topic"), after=("filtered",))
 @hint("DataProcessor(10), made once in __init__; publish average() after each scan.", "Float32(data=...)")
 def test_mean_of_ten(workspace: Workspace, fresh_processor: Processor, draw: random.Random) -> None:
     """mean_distance is the average of the newest ten scans' means."""
-    means = [round(draw.uniform(0.5, 3.0), 2) for _ in range(14)]
-    blind = set(draw.sample(range(1, len(means)), 4))  # no mean, and none of the ten
-    shown = [reading for i, mean in enumerate(means) for reading in ([nan], [mean, nan, mean])[i not in blind :]]
-    _, said = fresh_processor.show(*map(scan, shown))
-    if not _all_alike(said, _means(workspace, shown)):
-        expect(len(said) == len(means), f"{len(means)} scans with a distance went in, {len(said)} means came out.")
-        wanted = [fmean(means[max(0, i + 1 - HISTORY) : i + 1]) for i in range(len(means))]
-        wrong = next((i for i in range(len(means)) if abs(said[i] - wanted[i]) > TOLERANCE), None)
-        i = wrong or 0
-        differs = f"After {i + 1} scans with a distance it said {said[i]:.3f} m instead of {wanted[i]:.3f} m."
-        expect(wrong is None, differs)
-    _expect_own_history(workspace)
+    good = draw_cases(GOOD_SCANS, draw, 14)
+    # Blind scans have no mean, and do not count among the ten. Another check tests scans without beams.
+    blind = BLIND_SCANS.filter(lambda case: bool(case.readings) and 0.0 not in case.readings)
+    scans = [*good[:1], *draw_cases(GOOD_SCANS | blind, draw, 20), *good[1:], Readings((0.0,))]
+    scans = [replace(case, low=0.0) for case in scans]
+    _, actual = fresh_processor.send_scans(*map(scan_of, scans))
+    if not _all_close(actual, _student_averages(workspace, scans)):
+        pairs = zip(scans, averages(Series(tuple(scans), HISTORY)), strict=True)
+        expected = [average for case, average in pairs if average is not None and mean_of(case.masked) is not None]
+        message = "A scan of a lidar that measures from 0 m, with a reading of 0 m, brought no mean: 0 m is a distance."
+        expect(not _all_close(actual, expected[:-1]), message, fraction=0.5)
+        lengths = f"{len(expected)} scans with a distance went in, {len(actual)} means came out."
+        expect(len(actual) == len(expected), lengths)
+        wrong = next((i for i in range(len(actual)) if not _close(actual[i], expected[i])), 0)
+        message = f"After {wrong + 1} scans with a distance it said {actual[wrong]:.3f} m, not {expected[wrong]:.3f} m."
+        expect(_close(actual[wrong], expected[wrong]), message)
+    _expect_separate_histories(workspace)
 
 
 @check(points=1, covers="blind", after=("filtered",))
 @hint("mean_distance(msg.ranges) is None: warn instead of publishing.", "Float32 cannot hold None.")
-def test_blind_scan(processor: Processor) -> None:
+def test_blind_scan(workspace: Workspace, processor: Processor, draw: random.Random) -> None:
     """A scan without a distance comes out masked, and no mean with it."""
-    filtered, means = processor.show(scan([nan, 0.0, inf]))
-    expect(len(filtered) == 1, f"One blind scan went in, {len(filtered)} came out.")
-    expect(not means, f"A scan without any distance made it say {means} m.")
+    processor.send_scans(scan([1.0]))  # so that a mean is known
+    plain = Readings((nan, 0.0, inf))
+    # None of these is a distance for any usual lidar. Another check tests whether the limits are the lidar's own.
+    cases = [plain, *draw_cases(scans_of(st.sampled_from((*PLAIN_PHANTOMS, inf, -inf)), min_size=1), draw, 10)]
+    for case in cases:
+        _, means = processor.send_scans(scan_of(case))
+        expect(not means, f"A scan of {list(case.readings)}, without any distance, made it say {means} m.")
+    _expect_masked(workspace, processor, cases, fraction=0.75)
 
 
 @check(points=2, covers=("warns", "other-fields"), after=("blind_scan",), doc=LOGGING)
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)", "Nobody reads ten lines a second.")
-def test_warns_now_and_then(workspace: Workspace, fresh_processor: Processor) -> None:
+def test_warns_now_and_then(fresh_processor: Processor, draw: random.Random) -> None:
     """While the lidar sees nothing, it warns once a second; while it sees something, it does not."""
-    seeing, blind = scan([0.05, 1.0, nan, inf, -inf, 9.0]), scan([inf, nan, -inf, 0.05])
-    half = round(SECONDS * 10) // 2
-    needless = _warnings(fresh_processor, [seeing] * 5)
-    warnings = _warnings(fresh_processor, [blind] * half)
-    of_none = _warnings(fresh_processor, [scan([])] * half)
-    expect(warnings + of_none > 0, f"Blind for {SECONDS:.0f} s, it said nothing at level WARN.")
-    many = f"Blind for {SECONDS:.0f} s, it warned {warnings + of_none} times."
-    expect(warnings + of_none <= SECONDS + 2, many, fraction=0.5)
-    expect(not needless, "It warned of a scan that keeps a finite distance.", fraction=0.5)
-    expect(warnings > 0, "Infinities are no finite distance, and it did not warn of a scan of them.", fraction=0.5)
-    expect(of_none > 0, "It did not warn of scans without any beam.", fraction=0.5)
-    few = f"Blind for {SECONDS:.0f} s, it warned only {warnings + of_none} times."
-    expect(min(warnings, of_none) >= int(SECONDS / 2 / SILENT_SECONDS), few, fraction=0.5)
-    seconds, by_turns = 2 * ALTERNATIONS * SCAN_SECONDS, _warnings(fresh_processor, [blind, seeing] * ALTERNATIONS)
-    often = f"With blind and good scans by turns for {seconds:.0f} s, it warned {by_turns} times."
-    expect(by_turns <= seconds + 2, often, fraction=0.5)
-    causes = [scan([]), scan([inf, -inf]), scan([nan]), scan([0.05])]
-    seconds, mixed = len(causes) * ALTERNATIONS * SCAN_SECONDS, _warnings(fresh_processor, causes * ALTERNATIONS)
-    often = (
-        f"Scans without beams, of infinities, of nan and of phantoms by turns for {seconds:.0f} s: {mixed} warnings."
-    )
-    expect(mixed <= seconds + 2, often, fraction=0.5)
-    slow = _warnings(fresh_processor, [blind] * SLOW, apart=SLOW_SECONDS)
-    seldom = f"Blind for {SLOW * SLOW_SECONDS} s, with two scans a second, it warned {slow} times."
-    expect(slow >= 2, seldom, fraction=0.75)  # three are due; real time needs room
-    filtered, _ = fresh_processor.show(blind)
-    got = [list(message.ranges) for message in filtered]
-    kept = [inf, nan, -inf, nan]
-    masked = len(got) == 1 and (
-        _all_alike(got[0], kept) or _all_alike(got[0], _masked(workspace, [inf, nan, -inf, 0.05], 0.12, 3.5))
-    )
-    expect(masked, f"A blind scan of [inf, nan, -inf, 0.05] (0.12 to 3.5 m) came out as {got}.", fraction=0.75)
+    record = WarningRecord(fresh_processor)
+    record.send([Readings((0.05, 1.0, nan, inf, -inf, 9.0))], gap=SCAN_SECONDS, seconds=0.5)
+    is_needless = bool(record.warnings)
+    causes = [Readings(readings) for readings in ((nan, inf, -inf, 0.05), (), (inf, -inf), (nan, nan), (0.05,))]
+    stretches = [*([cause] for cause in causes), causes, [Readings((1.0,)), *causes[:1]]]
+    gaps = *draw.sample(GAPS, len(causes)), SCAN_SECONDS, SCAN_SECONDS
+    for cases, gap in zip(stretches, gaps, strict=True):
+        record.send(cases, gap=gap, seconds=STRETCH_SECONDS)
+    message = f"Blind for {len(causes) * STRETCH_SECONDS:.0f} s and more, it said nothing at level WARN."
+    expect(bool(record.warnings), message)
+    expect(not is_needless, "It warned of a scan that keeps a finite distance.", fraction=0.5)
+    record.expect_throttled()
+    record.expect_prompt()
 
 
 @check(points=1, covers="any-length", after=("filtered",))
 @hint("Loop over what is there.", "Other lidars have other numbers of beams.")
-def test_any_lidar(processor: Processor) -> None:
+def test_any_lidar(processor: Processor, draw: random.Random) -> None:
     """It takes scans of any length, an empty one too."""
-    for beams in (0, 1, 7, 1080):
-        filtered, _ = processor.show(scan([1.0] * beams))
+    for beams in (0, 1, 7, 1080, *draw.sample(range(2, 4000), 6), 0):
+        filtered, _ = processor.send_scans(scan([1.0] * beams))
         lengths = [len(message.ranges) for message in filtered]
         expect(lengths == [beams], f"A scan of {beams} beams came out as {lengths or 'nothing'}.")
 
 
-def _expect_own_history(workspace: Workspace) -> None:
-    """Fail the check if of two processors in one process each averages what the other was shown."""
-    node, first, second = calls.call("SensorProcessor"), _message(1.0), _message(3.0)
+def _expect_separate_histories(workspace: Workspace) -> None:
+    """Fail the check if two processors in one process share their history."""
+    node, first, second = calls.call("SensorProcessor"), _scan_call(1.0), _scan_call(3.0)
     turns = [(0, "scan_callback", first), (1, "scan_callback", second), (0, "scan_callback", first)]
     texts = node_callbacks.published(workspace, PROCESSOR, [node, node], turns)
-    said = [re.findall(r"Float32\(data=(-?\d{1,40}(?:\.\d{1,40})?)\)", text) for text in texts]
-    if not all(len(means) == 1 for means in said):
-        return  # it publishes otherwise than in its callback, which is allowed
-    got = [float(mean) for (mean,) in said]
+    means_of_calls = [re.findall(r"Float32\(data=(-?\d{1,40}(?:\.\d{1,40})?)\)", text) for text in texts]
+    if not all(len(means) == 1 for means in means_of_calls):
+        return  # the node does not publish in its callback, which is allowed
+    actual = [float(mean) for (mean,) in means_of_calls]
     sentence = "Of two sensor processors in one process, one was shown scans of 1 m and the other one of 3 m"
-    right = _all_alike(got, [1.0, 3.0, 1.0]) or _all_alike(got, _averages_of_two(workspace))
-    expect(right, f"{sentence}, and the other one said {got[1]:.3f} m: each needs a history of its own.", fraction=0.5)
+    is_right = _all_close(actual, [1.0, 3.0, 1.0]) or _all_close(actual, _averages_of_two(workspace))
+    expect(
+        is_right,
+        f"{sentence}, and the other one said {actual[1]:.3f} m: each needs a history of its own.",
+        fraction=0.5,
+    )
 
 
-def _message(distance: float) -> calls.Step:
-    """Return the call that makes a scan of one beam."""
+def _scan_call(distance: float) -> calls.Step:
+    """Return the call that creates a scan with one beam."""
     return calls.call("LaserScan", module="sensor_msgs.msg", ranges=[distance], range_min=0.125, range_max=3.5)
 
 
 def _averages_of_two(workspace: Workspace) -> list[float]:
-    """Return what two of the student's own DataProcessors say in `_expect_own_history`: its own checks judge it."""
+    """Return the averages of two of the student's DataProcessors, for the scans of `_expect_separate_histories`.
+
+    Other checks test whether these averages are right.
+    """
     plan = calls.Plan()
     processors = [plan.add(calls.call("DataProcessor", HISTORY)) for _ in range(2)]
-    asked = []
+    average_steps = []
     for number, distance in ((0, 1.0), (1, 3.0), (0, 1.0)):
         plan.add(calls.call("process", [distance], 0.125, 3.5, on=processors[number]))
-        asked.append(plan.add(calls.call("average", on=processors[number])))
+        average_steps.append(plan.add(calls.call("average", on=processors[number])))
     outcomes = calls.calls(workspace, UTILS, *plan.steps)
-    return [average for step in asked if isinstance(average := outcomes[step].value, float)]
+    return [average for step in average_steps if isinstance(average := outcomes[step].value, float)]
 
 
-def _warnings(processor: Processor, scans: list[LaserScan], apart: float = SCAN_SECONDS) -> int:
-    """Return how often it warns when it is shown these scans, so many seconds apart."""
-    before = logged(processor.output, "WARN")
-    processor.show(*scans, apart=apart)
-    return logged(processor.output, "WARN") - before
+def _expect_masked(workspace: Workspace, processor: Processor, cases: Sequence[Readings], *, fraction: float) -> None:
+    """Fail the check unless all scans come out masked, correctly or as the student's mask_invalid masks them.
+
+    Other checks test whether mask_invalid is right.
+    """
+    # A fast lidar shows whether each scan is published, or only the newest one when a timer fires.
+    apart = FAST_SECONDS if processor.time == LOCKSTEP else SCAN_SECONDS
+    filtered, _ = processor.send_scans(*map(scan_of, cases), apart=apart)
+    scans = "One scan" if len(cases) == 1 else f"{len(cases)} scans"
+    expect(len(filtered) == len(cases), f"{scans} went in, {len(filtered)} came out.")
+    steps = [calls.call("mask_invalid", list(case.readings), case.low, case.high) for case in cases]
+    outcomes = calls.calls(workspace, UTILS, *steps)
+
+    def judge(row: tuple[Readings, LaserScan, calls.StepResult]) -> None:
+        case, message, outcome = row
+        actual = list(message.ranges)
+        is_right = _all_close(actual, case.masked) or _all_close(actual, _floats(outcome.value))
+        sentence = f"{list(case.readings)} ({case.low} to {case.high} m) came out as {[round(r, 4) for r in actual]}"
+        expect(is_right, f"{sentence} instead of {case.masked}.", fraction=fraction)
+
+    expect_all(zip(cases, filtered, outcomes, strict=True), judge)
 
 
-def _masked(workspace: Workspace, readings: list[float], low: float, high: float) -> list[float]:
-    """Return what the student's own mask_invalid makes of readings, right or wrong: its own checks judge it."""
-    (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, low, high))
-    return (
-        [reading for reading in outcome.value if isinstance(reading, float)] if isinstance(outcome.value, list) else []
-    )
+def _with_infinities(case: Readings) -> Readings:
+    """Return the same readings, followed by infinities, nan and a distance."""
+    return replace(case, readings=(*case.readings, inf, nan, -inf, round((case.low + case.high) / 2, 3)))
 
 
-def _means(workspace: Workspace, scans: list[list[float]]) -> list[float]:
-    """Return the averages of the student's own DataProcessor, one for each scan that has a mean by their function."""
+def _student_averages(workspace: Workspace, cases: Sequence[Readings]) -> list[float]:
+    """Return the student's averages after all scans for which the student's mean_distance returns a mean."""
     plan = calls.Plan()
     processor = plan.add(calls.call("DataProcessor", HISTORY))
-    asked = []
-    for readings in scans:
-        masked = plan.add(calls.call("process", readings, 0.12, 3.5, on=processor))
-        asked.append(
-            (plan.add(calls.call("mean_distance", calls.made(masked))), plan.add(calls.call("average", on=processor)))
-        )
+    steps = []
+    for case in cases:
+        masked = plan.add(calls.call("process", list(case.readings), case.low, case.high, on=processor))
+        mean = plan.add(calls.call("mean_distance", calls.result_of(masked)))
+        steps.append((mean, plan.add(calls.call("average", on=processor))))
     outcomes = calls.calls(workspace, UTILS, *plan.steps)
-    averages = [outcomes[average].value for mean, average in asked if outcomes[mean].value is not None]
-    return [average for average in averages if isinstance(average, float)]
+    return _floats([outcomes[average].value for mean, average in steps if outcomes[mean].value is not None])
 
 
-def _all_alike(got: list[float], wanted: list[float]) -> bool:
-    return len(got) == len(wanted) and all(map(_alike, got, wanted))
+def _floats(values: object) -> list[float]:
+    return [each for each in values if isinstance(each, float)] if isinstance(values, list) else []
 
 
-def _alike(got: float, wanted: float) -> bool:
-    """Compare numbers of which one went through 32 bits."""
-    return isnan(got) if isnan(wanted) else isclose(got, wanted, rel_tol=1e-6)
+def _all_close(actual: list[float], expected: list[float]) -> bool:
+    return len(actual) == len(expected) and all(map(_close, actual, expected))
+
+
+def _close(actual: float, expected: float) -> bool:
+    """Return whether two numbers are equal within the precision of a 32-bit float."""
+    return isnan(actual) if isnan(expected) else isclose(actual, expected, rel_tol=1e-6)

@@ -1,14 +1,15 @@
-"""The utilities: pure functions, called in the sandbox with readings drawn from the seed."""
+"""Checks of the utilities: pure functions, which are called in the sandbox with drawn readings."""
 
 from __future__ import annotations
 
 import random
 from math import inf, nan
-from statistics import fmean
-from typing import Any
+
+from hypothesis import strategies as st
 
 from autograder.checking import Workspace, expect, group, hint
 from autograder.checking.probes import calls
+from autograder.checks.ch07_best_practices.hidden.judged_calls import judge_averages, judge_masked, judge_means
 from autograder.checks.ch07_best_practices.support.contract import (
     DEQUE,
     REP_117,
@@ -17,16 +18,37 @@ from autograder.checks.ch07_best_practices.support.contract import (
     RULE_PLACE,
     UTILS,
 )
+from autograder.checks.ch07_best_practices.support.drawn_readings import (
+    AT_ZERO,
+    BEYOND_LIMIT,
+    BLIND_SCANS,
+    GOOD,
+    GOOD_SCANS,
+    HIGH,
+    LOW,
+    MAX_SCANS,
+    ONE_BEAM,
+    PHANTOMS,
+    Readings,
+    Series,
+    draw_cases,
+    expect_all,
+    kept_readings,
+    lists_with_a_mean,
+    mean_of,
+    other_lidars,
+    scans_of,
+    series,
+)
 
 check = group("utils")
-LOW, HIGH = 0.2, 6.0
-BEYOND_LIMIT = 1e-4  # m beyond a limit, more than what rounding does
-DEFAULT_HISTORY = 100
-CALLS = ("mask_invalid", "mean_distance", "process", "average")
+FUNCTIONS = ("mask_invalid", "mean_distance", "process")
+# For each kind of sequence, the module of its type, the type's name, and arguments that come before the readings.
 SEQUENCES = {
     "a list": ("builtins", "list", ()),
     "a tuple": ("builtins", "tuple", ()),
     "an array.array": ("array", "array", ("d",)),
+    "an array.array of 32-bit floats": ("array", "array", ("f",)),
     "a numpy array": ("numpy", "array", ()),
 }
 
@@ -35,217 +57,224 @@ SEQUENCES = {
 @hint(RULE_PLACE, "A list comprehension with a conditional expression.")
 def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid returns as many readings as it was given, each in its place."""
-    readings = [round(draw.uniform(LOW, HIGH), 3) if i % 3 else draw.choice((0.0, nan, 50.0)) for i in range(40)]
-    masked = _masked(workspace, readings)
-    length = len(masked) if isinstance(masked, list) else masked
-    expect(length == len(readings), f"{len(readings)} readings went in, {length} came out.")
-    kept = [i for i in range(40) if i % 3]
-    moved = next((i for i in kept if not calls.same(masked[i], readings[i])), None)
-    expect(moved is None, f"The good reading in place {moved} came back as {masked[moved or 0]}.")
+
+    def judge(case: Readings, masked: list[float]) -> None:
+        lengths = f"{len(case.readings)} readings went in, {len(masked)} came out"
+        expect(len(masked) == len(case.readings), f"{lengths}: {case.call} returned {masked}.")
+        for place, reading in enumerate(case.readings):
+            is_good = case.low < reading < case.high
+            message = f"The good reading in place {place} came back as {masked[place]}: {case.call} returned {masked}."
+            expect(not is_good or calls.same(masked[place], reading), message)
+
+    judge_masked(workspace, draw_cases(scans_of(GOOD | PHANTOMS), draw, 20), judge)
 
 
 @check(points=2, covers=("phantoms", "mask"), after=("keeps_places",), doc=REP_117)
 @hint(RULE_MASK, "0.0, a negative number and one beyond range_max are no distances; nan stays nan.")
 def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid puts nan where a number cannot be a measurement."""
-    phantoms = [0.0, -1.0, nan, LOW * draw.uniform(0.5, 0.99), HIGH * draw.uniform(1.01, 2.0)]
-    masked = _masked(workspace, phantoms)
-    left = [m for m in masked if not calls.same(m, nan)]
-    expect(not left, f"The limits are {LOW} and {HIGH} m, and {phantoms} became {masked}.")
-    said = f"Of {phantoms}, {len(masked)} of {len(phantoms)} were replaced by nan, and the others dropped."
-    expect(len(masked) == len(phantoms), said, fraction=0.5)  # where readings belong is another check's matter
+
+    def judge(case: Readings, masked: list[float]) -> None:
+        unmasked_readings = [reading for reading in masked if not calls.same(reading, nan)]
+        expect(not unmasked_readings, f"{case.call} returned {masked}: each of these readings should become nan.")
+        message = f"Of {list(case.readings)}, only {len(masked)} were replaced by nan, and the others dropped."
+        expect(len(masked) == len(case.readings), message, fraction=0.5)  # another check tests the places of readings
+
+    judge_masked(workspace, draw_cases(scans_of(PHANTOMS, min_size=1), draw, 20), judge)
 
 
 @check(points=1, covers="mask", after=("keeps_places",))
 @hint(RULE_MASK, "Both limits belong to the range: <=.")
-def test_limits_count(workspace: Workspace) -> None:
+def test_limits_count(workspace: Workspace, draw: random.Random) -> None:
     """A reading of exactly range_min or range_max is a measurement."""
-    masked = _masked(workspace, [LOW, HIGH])
-    expect(calls.same(masked, [LOW, HIGH]), f"[range_min, range_max] became {masked}.")
+
+    def judge(case: Readings, masked: list[float]) -> None:
+        message = f"{case.call} returned {masked}: a reading of exactly range_min or range_max stays."
+        expect(
+            calls.same(kept_readings(masked), kept_readings(case.masked)),
+            message,
+            fraction=0.0 if case.is_usual else 0.5,
+        )
+
+    plain = Readings((LOW, HIGH))
+    judge_masked(workspace, [plain, *draw_cases(other_lidars(at_limits=True), draw, 12)], judge)
 
 
 @check(points=2, covers=("infinities", "mask"), after=("keeps_places",), doc=REP_117)
 @hint("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK)
-def test_infinities_stay(workspace: Workspace) -> None:
+def test_infinities_stay(workspace: Workspace, draw: random.Random) -> None:
     """Both infinities are statements of the lidar, and stay."""
-    masked = _masked(workspace, [inf, 1.0, -inf])
-    expect(calls.same(masked, [inf, 1.0, -inf]), f"[inf, 1.0, -inf] became {masked}.")
+
+    def judge(case: Readings, masked: list[float]) -> None:
+        expect(calls.same(masked, case.masked), f"{case.call} returned {masked}: inf and -inf stay, in their places.")
+
+    judge_masked(workspace, draw_cases(scans_of(st.sampled_from((inf, -inf)) | GOOD, min_size=1), draw, 15), judge)
 
 
 @check(points=2, covers="mask", after=("keeps_places",))
 @hint("A lidar says its own limits: range_min and range_max are arguments.", "Write no 0.1 and no 10.0.")
 def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> None:
     """The limits are the lidar's own, not fixed numbers."""
-    near, far = round(draw.uniform(0.02, 0.05), 3), round(draw.uniform(20.0, 30.0), 1)
-    rows: tuple[tuple[list[float], list[float], float], ...] = (
-        ([near, far, near / 2, far * 2], [near, far], 0.0),
-        ([near - BEYOND_LIMIT, far + BEYOND_LIMIT], [], 0.75),
-    )
-    outcomes = calls.calls(
-        workspace, UTILS, *(calls.call("mask_invalid", readings, near, far) for readings, _, _ in rows)
-    )
-    for outcome, (readings, wanted, fraction) in zip(outcomes, rows, strict=True):
-        shown = f"mask_invalid({readings}, {near}, {far})"
-        masked = calls.value(outcome, shown)
-        kept = [reading for reading in masked if not calls.same(reading, nan)] if isinstance(masked, list) else masked
-        said = f"{shown} returned {masked}: it should keep {wanted or 'none'}, and put nan in the place of the others."
-        expect(calls.same(kept, wanted), said, fraction=fraction)
+
+    def judge(case: Readings, masked: list[float]) -> None:
+        actual, expected = kept_readings(masked), kept_readings(case.masked)
+        advice = f"it should keep {expected or 'none'}, and put nan in the place of the others."
+        # Keeping a reading that is only just beyond a limit costs less.
+        is_blatant = len(actual) < len(expected) or any(case.beyond(reading) > 2 * BEYOND_LIMIT for reading in actual)
+        fraction = 0.0 if is_blatant else 0.75
+        expect(calls.same(actual, expected), f"{case.call} returned {masked}: {advice}", fraction=fraction)
+
+    judge_masked(workspace, draw_cases(other_lidars(at_limits=False), draw, 25), judge)
 
 
 @check(points=1, covers=("leave-lists", "mask"), after=("keeps_places",))
 @hint("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list.")
-def test_input_untouched(workspace: Workspace) -> None:
+def test_input_untouched(workspace: Workspace, draw: random.Random) -> None:
     """What is given to mask_invalid, and to process, is left as it was."""
-    readings = [0.0, 1.0, 99.0]
-    (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, LOW, HIGH))
-    calls.value(outcome, "mask_invalid(...)")
-    processed = _processed(workspace, 3, [readings])[1]
-    calls.value(processed, "DataProcessor(3).process(...)")
-    for each in (outcome, processed):
-        expect(calls.same(list(each.arguments[:1]), [readings]), f"The caller's {readings} became {each.arguments[0]}.")
-    for staying in ([1.0, inf, 2.0], []):
-        *_, itself = calls.calls(
-            workspace,
-            UTILS,
-            calls.call("list", staying, module="builtins"),
-            calls.call("mask_invalid", calls.made(0), LOW, HIGH),
-            calls.call("is_", calls.made(0), calls.made(1), module="operator"),
-        )
-        shown = f"mask_invalid({staying}, {LOW}, {HIGH})"
-        expect(itself.value is False, f"{shown} returned the caller's list itself instead of a new one.", fraction=0.75)
+    plain = Readings((0.0, 1.0, 99.0))
+    plan, cases = (
+        calls.Plan(),
+        [plain, *draw_cases(scans_of(GOOD | st.just(inf)) | scans_of(GOOD | PHANTOMS), draw, 12)],
+    )
+    processor = plan.add(calls.call("DataProcessor", 3))
+    numbers = []
+    for case in cases:
+        limits, readings = (case.low, case.high), list(case.readings)
+        readings_step = plan.add(calls.call("list", readings, module="builtins"))
+        masked = plan.add(calls.call("mask_invalid", calls.result_of(readings_step), *limits))
+        plan.add(calls.call("is_", calls.result_of(readings_step), calls.result_of(masked), module="operator"))
+        plan.add(calls.call("process", readings, *limits, on=processor))
+        plan.add(calls.call("mean_distance", readings))
+        numbers.append(masked)
+    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+
+    def judge(number: int) -> None:
+        case = cases[numbers.index(number)]
+        masked, is_same, processed, mean = outcomes[number : number + 4]
+        if case is plain:  # other checks test whether the functions take other readings
+            calls.value(masked, case.call)
+            calls.value(processed, f"DataProcessor(3).process({case!r})")
+        for function, outcome in (("mask_invalid", masked), ("process", processed), ("mean_distance", mean)):
+            after = list(outcome.arguments[:1]) or [list(case.readings)]  # no arguments are known after an exception
+            message = f"{function} changed the list that it was given: {list(case.readings)} became {after[0]}."
+            expect(calls.same(after, [list(case.readings)]), message)
+        message = f"{case.call} returned the caller's list itself instead of a new one."
+        expect(is_same.value is False, message, fraction=0.75)
+
+    expect_all(numbers, judge)
 
 
 @check(points=2, covers="mean")
 @hint(RULE_MEAN, "sum(...) / len(...) of the readings that are finite.")
 def test_mean(workspace: Workspace, draw: random.Random) -> None:
     """mean_distance is the mean of the finite readings."""
-    finite = [round(draw.uniform(LOW, HIGH), 3) for _ in range(9)]
-    readings = [*finite, nan, inf, -inf]
-    draw.shuffle(readings)
-    (outcome,) = calls.calls(workspace, UTILS, calls.call("mean_distance", readings))
-    mean = calls.value(outcome, "mean_distance(...)")
-    right = isinstance(mean, int | float) and abs(mean - fmean(finite)) < 1e-9
-    expect(right, f"The finite readings of {readings} have the mean {fmean(finite):.4f}, not {mean}.")
-    (outcome,) = calls.calls(workspace, UTILS, calls.call("mean_distance", [0.0, nan]))
-    mean = calls.value(outcome, "mean_distance(...)")
-    expect(mean == 0.0, f"mean_distance([0.0, nan]) returned {mean} instead of 0.0.", fraction=0.5)
+
+    def judge(readings: list[float], mean: object) -> None:
+        expected = mean_of(readings)
+        assert expected is not None
+        is_right = isinstance(mean, int | float) and abs(mean - expected) < 1e-9
+        message = f"mean_distance({readings}) returned {mean} instead of {expected:.4f}."
+        expect(is_right, message, fraction=0.0 if expected else 0.5)
+
+    judge_means(workspace, draw_cases(lists_with_a_mean(), draw, 25), judge)
 
 
 @check(points=1, covers="mean", after=("mean",))
 @hint("Ask whether there is a finite reading before you divide.", "None says: not known. 0.0 says: touching.")
-def test_no_mean(workspace: Workspace) -> None:
+def test_no_mean(workspace: Workspace, draw: random.Random) -> None:
     """Without a finite reading, mean_distance is None."""
-    for readings in ([], [nan, nan], [inf]):
-        (outcome,) = calls.calls(workspace, UTILS, calls.call("mean_distance", readings))
-        mean = calls.value(outcome, f"mean_distance({readings})")
+
+    def judge(readings: list[float], mean: object) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
+
+    judge_means(workspace, draw_cases(st.lists(st.sampled_from((nan, inf, -inf)), max_size=5), draw, 12), judge)
 
 
 @check(points=1, covers=("sequences", "mask"), after=("keeps_places", "mean"))
 @hint("Go through it by `for`, and make a list of your own.", "A numpy array is neither true nor false, and not `[]`.")
 def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
     """The readings may come as a tuple, as an array.array or as a numpy array."""
-    near, far = round(draw.uniform(LOW, 3.0), 2), round(draw.uniform(3.0, HIGH), 2)
-    readings = [near, nan, far, 3 * HIGH, inf]
-    staying = [near, far]  # of which none is masked
-    wanted: list[Any] = []  # what a list brings: whether that is right, others judge
-    for kind, (module, name, first) in SEQUENCES.items():
-        *outcomes, returned = calls.calls(
-            workspace,
-            UTILS,
-            calls.call(name, *first, readings, module=module),
-            calls.call("DataProcessor", 2),
-            calls.call("mask_invalid", calls.made(0), LOW, HIGH),
-            calls.call("mean_distance", calls.made(0)),
-            calls.call("process", calls.made(0), LOW, HIGH, on=1),
-            calls.call("average", on=1),
-            calls.call(name, *first, staying, module=module),
-            calls.call("mask_invalid", calls.made(6), LOW, HIGH),
-            calls.look("__class__", on=7),
-            calls.look("__name__", on=8),
-        )
-        seen = [
-            calls.value(outcome, f"{called} of {kind}") for called, outcome in zip(CALLS, outcomes[2:6], strict=True)
-        ]
-        wanted = wanted or seen
-        for called, got, right in zip(CALLS, seen, wanted, strict=True):
-            said = f"With {readings} as {kind}, {called} returned {got}, and as a list {right}."
-            expect(calls.same(got, right), said)
-        said = f"With {staying} as {kind}, mask_invalid returned a value of type {returned.value} instead of a list."
-        expect(returned.value == "list", said, fraction=0.75)
+    eighths = st.integers(2, 47).map(lambda number: number / 8)  # exact in 32 bits
+    odd_readings = st.sampled_from((nan, inf, 18.0))
+    drawn_scans = scans_of(eighths | odd_readings, low=0.125)
+    plain = Readings((1.5, nan, 4.25, 18.0, inf), 0.125)
+    cases = [plain, *draw_cases(drawn_scans | scans_of(eighths, low=0.125), draw, 8)]
+    plan, first_steps = calls.Plan(), {}
+    for case in cases:
+        for kind, (module, name, first) in SEQUENCES.items():
+            readings_step = plan.add(calls.call(name, *first, list(case.readings), module=module))
+            processor = plan.add(calls.call("DataProcessor", 2))
+            masked = plan.add(calls.call("mask_invalid", calls.result_of(readings_step), case.low, case.high))
+            plan.add(calls.call("mean_distance", calls.result_of(readings_step)))
+            plan.add(calls.call("process", calls.result_of(readings_step), case.low, case.high, on=processor))
+            plan.add(calls.attribute("__name__", on=plan.add(calls.attribute("__class__", on=masked))))
+            first_steps[case, kind] = masked
+    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+
+    def judge(run: tuple[Readings, str]) -> None:
+        case, kind = run
+        start, list_start, readings = first_steps[run], first_steps[case, "a list"], list(case.readings)
+        situation, type_name = f"With {readings} as {kind}", outcomes[start + len(FUNCTIONS) + 1].value
+        message = f"{situation}, mask_invalid returned a value of type {type_name} instead of a list."
+        expect(bool(outcomes[start].raised) or type_name == "list", message, fraction=0.75)
+        for number, function in enumerate(FUNCTIONS):
+            with_list = outcomes[list_start + number]  # other checks test whether this result is right
+            if case is plain or not with_list.raised:
+                actual = calls.value(outcomes[start + number], f"{situation}, {function}")
+                message = f"{situation}, {function} returned {actual}, and as a list {with_list.value}."
+                expect(calls.same(actual, with_list.value), message)
+
+    expect_all(first_steps, judge)
 
 
 @check(points=2, covers=("history", "process"), after=("keeps_places", "mean"), doc=DEQUE)
 @hint("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
     """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
-    size, means = draw.randint(3, 6), [round(draw.uniform(1.0, 5.0), 3) for _ in range(12)]
-    outcomes = _processed(workspace, size, [[mean] * (1 + i % 3) for i, mean in enumerate(means)])
-    average, wanted = calls.value(outcomes[-1], "average()"), fmean(means[-size:])
-    expect(
-        calls.same(average, wanted),
-        f"After 12 scans, DataProcessor({size}).average() is {average}; the newest {size} have {wanted:.4f}.",
-    )
-    many = [round(draw.uniform(1.0, 5.0), 3) for _ in range(DEFAULT_HISTORY + 7)]
-    average, wanted = (
-        calls.value(_processed(workspace, None, [[mean] for mean in many])[-1], "average()"),
-        fmean(many[7:]),
-    )
-    said = f"After {len(many)} scans, DataProcessor().average() is {average}; the newest 100 have {wanted:.4f}."
-    expect(calls.same(average, wanted), said, fraction=0.75)
+    full = Series(tuple(draw_cases(GOOD_SCANS, draw, 12)), draw.randint(3, 6))
+    judge_averages(workspace, [full], fraction=0.0)
+    judge_averages(workspace, draw_cases(series(GOOD_SCANS, st.integers(1, 5)), draw, 12), fraction=0.5)
+    default = Series(tuple(Readings((metres / 1000,)) for metres in draw.sample(range(1000, 5000), 107)), None)
+    judge_averages(workspace, [default], fraction=0.75)
 
 
 @check(points=1, covers=("process", "average"), after=("bounded_history", "no_mean"))
 @hint("Append the mean only if it is not None.", "A scan without a distance says nothing about distances.")
-def test_blind_scans_leave_no_mean(workspace: Workspace) -> None:
+def test_blind_scans_leave_no_mean(workspace: Workspace, draw: random.Random) -> None:
     """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
-    for blind, fraction in ([nan], 0.0), ([inf, 0.0], 0.5):
-        *_, average = _processed(workspace, 3, [[2.0], blind, blind, [4.0]])
-        seen = calls.value(average, "average()")
-        said = f"After scans of 2 m, {blind}, {blind} and 4 m the average is {seen} instead of 3.0."
-        expect(calls.same(seen, 3.0), said, fraction=fraction)
-    *_, average = _processed(workspace, 3, [[nan]])
-    seen = calls.value(average, "average()")
-    expect(seen is None, f"After one blind scan the average is {seen} instead of None.")
-    at_zero = [calls.call("process", [metres], -1.0, HIGH, on=0) for metres in (0.0, 2.0)]  # a mean of 0 is a mean
-    *_, average = calls.calls(workspace, UTILS, calls.call("DataProcessor", 2), *at_zero, calls.call("average", on=0))
-    seen = calls.value(average, "average()")
-    expect(calls.same(seen, 1.0), f"After scans of 0 m and 2 m the average is {seen} instead of 1.0.", fraction=0.5)
+    good, blind = (Readings((2.0,)), Readings((4.0,))), Readings((nan,))
+    judge_averages(workspace, [Series((blind, good[0], blind, blind, good[1]), 3)], fraction=0.0)
+    scans = ONE_BEAM | st.just(AT_ZERO) | BLIND_SCANS
+    judge_averages(workspace, draw_cases(series(scans, st.just(MAX_SCANS)), draw, 20), fraction=0.5)
 
 
 @check(points=1, covers="silent", after=("masks_phantoms", "mean", "bounded_history"))
 @hint("A library returns data; who calls it decides what is logged.", "Remove print().")
-def test_prints_nothing(workspace: Workspace) -> None:
+def test_prints_nothing(workspace: Workspace, draw: random.Random) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""
-    outcomes = _processed(workspace, 3, [[0.0, 99.0, 1.0], [nan]])
-    outcomes += calls.calls(
+    outcomes = calls.calls(
         workspace,
         UTILS,
         calls.call("StringIO", module="io"),
         calls.call("import_module", "sys", module="importlib"),
-        calls.call("setattr", calls.made(1), "stderr", calls.made(0), module="builtins"),
-        calls.call("simplefilter", "ignore", module="warnings"),  # a warning of numpy's is no print
-        calls.call("disable", module="logging"),  # nor is a record of logging
-        calls.call("mask_invalid", [0.0], LOW, HIGH),
-        calls.call("mean_distance", [nan]),
+        calls.call("setattr", calls.result_of(1), "stderr", calls.result_of(0), module="builtins"),
+        calls.call("simplefilter", "ignore", module="warnings"),  # a warning of numpy is not printed output
+        calls.call("disable", module="logging"),  # neither is a log record
+        calls.call("DataProcessor", 3),
+        *(
+            step
+            for case in draw_cases(scans_of(GOOD | PHANTOMS | st.sampled_from((inf, -inf))), draw, 8)
+            for step in (
+                calls.call("mask_invalid", list(case.readings), case.low, case.high),
+                calls.call("mean_distance", list(case.readings)),
+                calls.call("process", list(case.readings), case.low, case.high, on=5),
+                calls.call("average", on=5),
+            )
+        ),
         calls.call("getvalue", on=0),
     )
     for outcome in outcomes:
         expect(outcome.raised != "NotImplementedError", "They are still to be written.")
-    printed, errors = "".join(outcome.printed for outcome in outcomes), outcomes[-1].value
-    expect(not printed, f"They printed: {printed[:80]!r}")
+    printed_text, errors = "".join(outcome.printed for outcome in outcomes), outcomes[-1].value
+    expect(not printed_text, f"They printed: {printed_text[:80]!r}")
     expect(not errors, f"They printed on the standard error stream: {str(errors)[:80]!r}", fraction=0.5)
-
-
-def _masked(workspace: Workspace, readings: list[float]) -> list[float]:
-    (outcome,) = calls.calls(workspace, UTILS, calls.call("mask_invalid", readings, LOW, HIGH))
-    masked = calls.value(outcome, f"mask_invalid({readings}, {LOW}, {HIGH})")
-    expect(isinstance(masked, list), f"mask_invalid returned {masked!r} instead of a list.")
-    return list(masked)
-
-
-def _processed(workspace: Workspace, history: int | None, scans: list[list[float]]) -> list[calls.StepResult]:
-    """Let a DataProcessor, of the default history if None, take scans; return the outcomes, `average()`'s last."""
-    sizes = () if history is None else (history,)
-    process = [calls.call("process", readings, LOW, HIGH, on=0) for readings in scans]
-    return calls.calls(workspace, UTILS, calls.call("DataProcessor", *sizes), *process, calls.call("average", on=0))

@@ -1,4 +1,4 @@
-"""The contracts of the exercises, in numbers, and the names that the checks use."""
+"""Names and numbers in the exercises' contracts, and hints and links that several checks use."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ UTILS = "my_robot_package.utils.data_processing"
 PROCESSOR = "my_robot_package.nodes.sensor_processor"
 ROBUST = "my_robot_package.nodes.robust_node"
 
-HISTORY = 10  # scans that mean_distance is taken over
-SILENT_SECONDS = 1.5  # the longest between two warnings of a processor that sees nothing
+HISTORY = 10  # scans over which mean_distance averages
+WARN_PERIOD = 1.0  # s: the shortest time between two warnings
+MAX_SILENCE = 1.5  # s: the longest time between two warnings while no scan has a distance
 PERIOD = 1.0  # s between two readings of RobustNode
-MAX_ERRORS = 10
+MAX_ERRORS = 10  # failures in a row: with more of them, RobustNode is unstable by default
 TOLERANCE = 1e-4  # m: a range is a 32-bit float
 
 RULE_MASK = "A reading is kept when it is an infinity or range_min <= reading <= range_max; else it becomes nan."

@@ -1,4 +1,4 @@
-"""What the student's utilities and nodes do with a few readings."""
+"""Checks of the student's utilities and nodes with a few readings."""
 
 from __future__ import annotations
 
@@ -9,9 +9,16 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from autograder.checking import Workspace, check, expect, hint
 from autograder.checking.probes import calls, parameters
 from autograder.checks.ch07_best_practices.support import contract
-from autograder.checks.ch07_best_practices.support.robot import STATUS, Processor, Robust, expected, logged, scan
+from autograder.checks.ch07_best_practices.support.robot import (
+    STATUS,
+    Processor,
+    Robust,
+    count_logged,
+    expected_statuses,
+    scan,
+)
 
-BLIND_SECONDS = 6  # of scans without a distance
+BLIND_SECONDS = 6  # s for which scans without a distance come
 
 
 @check(points=1, covers=("mask", "places", "phantoms"), group="utils", doc=contract.REP_117)
@@ -20,24 +27,24 @@ def test_mask_invalid(workspace: Workspace) -> None:
     """mask_invalid replaces what is no measurement by nan, and keeps every reading's place."""
     readings = [1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5]
     (outcome,) = calls.calls(workspace, contract.UTILS, calls.call("mask_invalid", readings, 0.12, 3.5))
-    shown = "mask_invalid([1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5], 0.12, 3.5)"
-    masked = calls.value(outcome, shown)
-    expect(calls.same(masked, [1.0, nan, inf, nan, nan, -inf, 0.12, 3.5]), f"{shown} returned {masked}.")
-    expect(calls.same(list(outcome.arguments[:1]), [readings]), f"{shown} changed the list that it was given.")
-    expect(not outcome.printed, f"{shown} printed {outcome.printed[:80]!r}.")
+    call_text = "mask_invalid([1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5], 0.12, 3.5)"
+    masked = calls.value(outcome, call_text)
+    expect(calls.same(masked, [1.0, nan, inf, nan, nan, -inf, 0.12, 3.5]), f"{call_text} returned {masked}.")
+    expect(calls.same(list(outcome.arguments[:1]), [readings]), f"{call_text} changed the list that it was given.")
+    expect(not outcome.printed, f"{call_text} printed {outcome.printed[:80]!r}.")
 
 
 @check(points=1, covers="mean", group="utils")
 @hint(contract.RULE_MEAN, "Without a finite reading there is no mean: return None, not 0.0.")
 def test_mean_distance(workspace: Workspace) -> None:
     """mean_distance takes the mean of the finite readings, and says None when there is none."""
-    some, none = calls.calls(
+    with_finite, without_finite = calls.calls(
         workspace, contract.UTILS, calls.call("mean_distance", [1.0, nan, 2.0, inf]), calls.call("mean_distance", [nan])
     )
-    mean = calls.value(some, "mean_distance([1.0, nan, 2.0, inf])")
+    mean = calls.value(with_finite, "mean_distance([1.0, nan, 2.0, inf])")
     expect(calls.same(mean, 1.5), f"mean_distance([1.0, nan, 2.0, inf]) returned {mean} instead of 1.5.")
-    nothing = calls.value(none, "mean_distance([nan])")
-    expect(nothing is None, f"mean_distance([nan]) returned {nothing} instead of None.")
+    no_mean = calls.value(without_finite, "mean_distance([nan])")
+    expect(no_mean is None, f"mean_distance([nan]) returned {no_mean} instead of None.")
 
 
 @check(
@@ -56,8 +63,8 @@ def test_data_processor(workspace: Workspace) -> None:
     ]
     _, first, *_, outcome = calls.calls(workspace, contract.UTILS, *steps, calls.call("average", on=0))
     average = calls.value(outcome, "average()")
-    shown = "After scans of 1, 2, 3 and nan m, DataProcessor(2).average()"
-    expect(calls.same(average, 2.5), f"{shown} is {average} instead of 2.5.")
+    situation = "After scans of 1, 2, 3 and nan m, DataProcessor(2).average()"
+    expect(calls.same(average, 2.5), f"{situation} is {average} instead of 2.5.")
     expect(calls.same(list(first.arguments[:1]), [[1.0, 0.0]]), "process changed the list that it was given.")
 
 
@@ -66,13 +73,15 @@ def test_data_processor(workspace: Workspace) -> None:
 @hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 def test_filters_scans(processor: Processor) -> None:
     """sensor_processor publishes a scan again: masked by its own limits, everything else as it came."""
-    sent = scan([8.0, 0.0, 2.0], range_min=0.5, range_max=8.0)
-    sent.intensities = [4.0, 0.0, 2.0]
-    filtered, _ = processor.show(sent)
+    sent_scan = scan([8.0, 0.0, 2.0], range_min=0.5, range_max=8.0)
+    sent_scan.intensities = [4.0, 0.0, 2.0]
+    filtered, _ = processor.send_scans(sent_scan)
     expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out on scan_filtered.")
     ranges = list(filtered[0].ranges)
-    right = len(ranges) == 3 and isnan(ranges[1]) and ranges[::2] == [8.0, 2.0]
-    expect(right, f"[8.0, 0.0, 2.0] with limits 0.5 and 8.0 went in, {ranges} came out: [8.0, nan, 2.0] was expected.")
+    is_right = len(ranges) == 3 and isnan(ranges[1]) and ranges[::2] == [8.0, 2.0]
+    expect(
+        is_right, f"[8.0, 0.0, 2.0] with limits 0.5 and 8.0 went in, {ranges} came out: [8.0, nan, 2.0] was expected."
+    )
     intensities = list(filtered[0].intensities)
     expect(intensities == [4.0, 0.0, 2.0], f"intensities went in as [4.0, 0.0, 2.0] and came out as {intensities}.")
 
@@ -81,14 +90,14 @@ def test_filters_scans(processor: Processor) -> None:
 @hint("qos_profile_sensor_data for scan and for scan_filtered, 10 for mean_distance; no name begins with a slash.")
 def test_sensor_profile(processor: Processor) -> None:
     """It takes scan and offers scan_filtered best effort, as a lidar does."""
-    ends = {
+    endpoints = {
         "scan": processor.node.get_subscriptions_info_by_topic("/scan"),
         "scan_filtered": processor.node.get_publishers_info_by_topic("/scan_filtered"),
     }
-    for topic, found in ends.items():
-        expect(bool(found), f"It has no {topic}.")
-        reliable = any(end.qos_profile.reliability == ReliabilityPolicy.RELIABLE for end in found)
-        expect(not reliable, f"{topic} is reliable.")
+    for topic, infos in endpoints.items():
+        expect(bool(infos), f"It has no {topic}.")
+        is_reliable = any(endpoint.qos_profile.reliability == ReliabilityPolicy.RELIABLE for endpoint in infos)
+        expect(not is_reliable, f"{topic} is reliable.")
 
 
 @check(points=1, covers=("mean-of-ten", "blind", "warns"), group="processor", after=("data_processor", "filters_scans"))
@@ -96,15 +105,15 @@ def test_sensor_profile(processor: Processor) -> None:
 @hint("mean_distance(masked) is None: warn, with throttle_duration_sec, and publish no mean.")
 def test_means(fresh_processor: Processor) -> None:
     """mean_distance is the average over the newest ten scans; scans without a distance bring a warning and no mean."""
-    _, means = fresh_processor.show(*(scan([metres]) for metres in (2.0, *[1.0] * 10)))
+    _, means = fresh_processor.send_scans(*(scan([metres]) for metres in (2.0, *[1.0] * 10)))
     expect(len(means) == 11, f"11 scans went in, {len(means)} means came out.")
-    newest = [round(means[place], 3) for place in (0, 1, -1)]
+    newest = [round(means[i], 3) for i in (0, 1, -1)]
     expect(newest == [2.0, 1.5, 1.0], f"After 1, 2 and 11 scans the mean was {newest} instead of [2.0, 1.5, 1.0].")
-    _, means = fresh_processor.show(*(scan([nan]) for _ in range(BLIND_SECONDS * 10)))
+    _, means = fresh_processor.send_scans(*(scan([nan]) for _ in range(BLIND_SECONDS * 10)))
     expect(not means, f"Scans without a distance brought {len(means)} means.")
-    warnings = logged(fresh_processor.output, "WARN")
-    said = f"Scans without a distance for {BLIND_SECONDS} s brought {warnings} warnings instead of one a second."
-    expect(int(BLIND_SECONDS / contract.SILENT_SECONDS) <= warnings <= BLIND_SECONDS + 2, said)
+    warnings = count_logged(fresh_processor.output, "WARN")
+    message = f"Scans without a distance for {BLIND_SECONDS} s brought {warnings} warnings instead of one a second."
+    expect(int(BLIND_SECONDS / contract.MAX_SILENCE) <= warnings <= BLIND_SECONDS + 2, message)
 
 
 @check(points=1, covers=("failed", "once-a-second"), group="robust", doc=contract.ERRORS)
@@ -113,9 +122,9 @@ def test_means(fresh_processor: Processor) -> None:
 def test_counts_failures(workspace: Workspace) -> None:
     """robust_node says each second how its reading went, and counts failures in a row."""
     with Robust(workspace, seed=7, failure_probability=0.5) as harness:
-        said = harness.receive(8)
-    wanted = expected(7, 0.5, 8)
-    expect(said == wanted, f"With seed 7 it said {said}, and should have said {wanted}.")
+        statuses = harness.receive(8)
+    correct = expected_statuses(7, 0.5, 8)
+    expect(statuses == correct, f"With seed 7 it said {statuses}, and should have said {correct}.")
 
 
 @check(
@@ -130,15 +139,22 @@ def test_counts_failures(workspace: Workspace) -> None:
 def test_declares(workspace: Workspace) -> None:
     """robust_node offers status transient local, and its three parameters have ranges."""
     with Robust(workspace) as harness:
-        offered = harness.node.get_publishers_info_by_topic(STATUS)
-        described = parameters.NodeParameters(harness, "/robust_node").descriptors(
+        publishers = harness.node.get_publishers_info_by_topic(STATUS)
+        descriptors = parameters.NodeParameters(harness, "/robust_node").descriptors(
             "failure_probability", "seed", "max_errors"
         )
-    durable = [end.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for end in offered]
-    expect(bool(durable) and all(durable), "status is not transient local: a node that joins late would hear nothing.")
-    expect(len(described) == 3, f"Of its three parameters it declares {', '.join(described) or 'none'}.")
-    bare = [name for name, found in described.items() if not [*found.floating_point_range, *found.integer_range]]
-    expect(not bare, f"There is no range for {', '.join(bare)}.")
+    are_durable = [publisher.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for publisher in publishers]
+    expect(
+        bool(are_durable) and all(are_durable),
+        "status is not transient local: a node that joins late would hear nothing.",
+    )
+    expect(len(descriptors) == 3, f"Of its three parameters it declares {', '.join(descriptors) or 'none'}.")
+    without_range = [
+        name
+        for name, descriptor in descriptors.items()
+        if not [*descriptor.floating_point_range, *descriptor.integer_range]
+    ]
+    expect(not without_range, f"There is no range for {', '.join(without_range)}.")
 
 
 @check(
@@ -153,11 +169,11 @@ def test_declares(workspace: Workspace) -> None:
 def test_dead_sensor(workspace: Workspace) -> None:
     """With max_errors 6 and a dead sensor it is unstable from the seventh failure on, fatal once, errors throttled."""
     with Robust(workspace, failure_probability=1.0, max_errors=6) as harness:
-        said = harness.receive(12)
-        fatal, errors = logged(harness.output, "FATAL"), logged(harness.output, "ERROR")
-    wanted = [f"{'failed' if n <= 6 else 'unstable'}: {n} in a row" for n in range(1, 13)]
-    expect(said == wanted, f"It said {said}.")
-    expect(fatal == 1, f"It logged {fatal} fatal messages instead of one.")
+        statuses = harness.receive(12)
+        fatals, errors = count_logged(harness.output, "FATAL"), count_logged(harness.output, "ERROR")
+    correct = [f"{'failed' if n <= 6 else 'unstable'}: {n} in a row" for n in range(1, 13)]
+    expect(statuses == correct, f"It said {statuses}.")
+    expect(fatals == 1, f"It logged {fatals} fatal messages instead of one.")
     expect(0 < errors <= 4, f"In 12 s it logged {errors} errors instead of one in 5 s.")
 
 
@@ -176,13 +192,13 @@ def test_recovers(workspace: Workspace) -> None:
 @hint("except SensorError as error: nothing wider. The generator that is handed in is the one that is used.")
 def test_shows_bugs(workspace: Workspace) -> None:
     """It does not catch a bug: with range(3) for a generator, timer_callback raises AttributeError."""
-    *_, called = calls.calls(
+    *_, result = calls.calls(
         workspace,
         contract.ROBUST,
         calls.call("init", module="rclpy"),
         calls.call("range", 3, module="builtins"),
-        calls.call("RobustNode", generator=calls.made(1)),
+        calls.call("RobustNode", generator=calls.result_of(1)),
         calls.call("timer_callback", on=2),
         network=True,
     )
-    expect("AttributeError" in called.kinds, f"It raised {called.raised or 'nothing'}.")
+    expect("AttributeError" in result.kinds, f"It raised {result.raised or 'nothing'}.")

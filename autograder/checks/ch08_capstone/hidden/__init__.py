@@ -1,4 +1,4 @@
-"""The hidden suite of 08_capstone: two packages from an empty folder, and a robot that finds its way."""
+"""The hidden checks of 08_capstone, whose two packages students write from an empty folder."""
 
 PACKAGES = ("robot_navigation_interfaces", "robot_navigation_tutorial")
 MODULES = (
@@ -14,7 +14,7 @@ MODULES = (
     "tests",
     "quality",
 )
-GROUPS = tuple(f"step_{number}" for number in range(1, 8))  # step 2 needs the messages of step 3, which is run first
-READS = ("solutions/robot_navigation_tutorial",)  # the given test of the whole system
+GROUPS = tuple(f"step_{number}" for number in range(1, 8))  # step 3 runs before step 2, which needs its messages
+READS = ("solutions/robot_navigation_tutorial",)  # contains the given integration test
 BUILD_MAY_FAIL = True
 OWN_TESTS = ("linters_pass", "tests_pass")

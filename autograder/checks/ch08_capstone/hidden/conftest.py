@@ -1,4 +1,4 @@
-"""Fixtures of the hidden checks: parts of the system, and the drives through hidden worlds."""
+"""Fixtures of the hidden checks: systems with some of the programs, and drives through hidden worlds."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from functools import partial
 import pytest
 
 from autograder.checking import Workspace
-from autograder.checks.ch08_capstone.hidden import judges
 from autograder.checks.ch08_capstone.hidden.drives import Drives
+from autograder.checks.ch08_capstone.hidden.fallback import BodyRunner, run_with_fallback
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PROCESSOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
-SLOW = 0.25  # of ROS time: how fast the machine's clocks run for programs that must not look at them
+SLOW_CLOCK_RATE = 0.25  # s on the machine's clocks in a second of ROS time; right programs do not read these clocks
 
 
 @pytest.fixture
 def seeing(shared_system: SharedSystem) -> System:
-    """The system for a check that needs the processor alone."""
+    """The system for a check that needs only the processor."""
     return shared_system.get(PROCESSOR)
 
 
@@ -30,29 +30,29 @@ def driving(shared_system: SharedSystem) -> System:
 
 @pytest.fixture(scope="session")
 def slow_system(workspace: Workspace) -> Iterator[SharedSystem]:
-    """Keeps the system of a machine whose clocks are slower than ROS time."""
-    shared = SharedSystem(workspace, SLOW)
+    """A shared system on a machine whose clocks are slower than ROS time."""
+    shared = SharedSystem(workspace, SLOW_CLOCK_RATE)
     yield shared
     shared.close()
 
 
 @pytest.fixture(scope="session")
 def lone_controller(workspace: Workspace) -> Iterator[SharedSystem]:
-    """Keeps the controller alone, to which right clearances are sent."""
-    shared = SharedSystem(workspace, absent=(PROCESSOR, MONITOR), stands_in=True)
+    """The controller alone, to which the expected clearances are sent."""
+    shared = SharedSystem(workspace, absent=(PROCESSOR, MONITOR), sends_clearances=True)
     yield shared
     shared.close()
 
 
 @pytest.fixture
-def judge_driving(shared_system: SharedSystem, lone_controller: SharedSystem) -> judges.JudgeDriving:
-    """Judges the controller: behind the student's processor and, if that fails, by right clearances."""
-    return partial(judges.judge_driving, shared_system, lone_controller)
+def judge_driving(shared_system: SharedSystem, lone_controller: SharedSystem) -> BodyRunner:
+    """Judges the controller with the student's processor and, if that fails, with the expected clearances."""
+    return partial(run_with_fallback, shared_system, lone_controller)
 
 
 @pytest.fixture(scope="session")
 def lone_monitor(workspace: Workspace) -> Iterator[SharedSystem]:
-    """Keeps the monitor alone; a check speaks for the other two."""
+    """The monitor alone; checks publish what the other two programs would."""
     shared = SharedSystem(workspace, absent=(PROCESSOR, CONTROLLER))
     yield shared
     shared.close()

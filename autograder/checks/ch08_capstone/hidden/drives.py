@@ -1,4 +1,4 @@
-"""The drives through hidden worlds: each is made when a check first asks for it, once."""
+"""The drives through hidden worlds; each runs once, when a check first asks for it."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ import numpy as np
 
 from autograder.checking import ReceivedMessage, drive
 from autograder.checks.ch02_nodes.hidden import world_generation
-from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked
+from autograder.checks.ch08_capstone.hidden.tracks import Floats, LidarFault, blocked_scan
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS
 from autograder.checks.ch08_capstone.support.system import System
 from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
 
-RADIUS = 0.18  # m
-ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0
+RADIUS = 0.18  # m: the robot's radius
+ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0  # s: the lengths of the drives
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
 TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
-STILL = 0.02  # m/s, rad/s: who is slower stands
-SLOWEST = 0.1  # of the contract's speeds: who is slower has no more time than this one
-DARK = LidarFault("dead", 3.0, 7.0)
+STILL = 0.02  # m/s, rad/s: a slower robot stands still
+MIN_SPEED_SHARE = 0.1  # of the contract's speeds: a robot that is even slower gets no more time
+DEAD = LidarFault("dead", 3.0, 7.0)
 BLOCKED = LidarFault("blocked", 9.5, 11.5)
 
 
 @dataclass(frozen=True)
-class Driven:
-    """A drive: the whole run, how long it was, and the commands with the harness's time at which it began."""
+class DriveResult:
+    """A drive: its recording, its duration, its start in the harness's time, and its commands."""
 
     recording: Recording
     seconds: float
-    began: float
+    start: float
     commands: tuple[ReceivedMessage, ...]
 
 
@@ -45,32 +45,32 @@ class Drives:
         self._system, self._seed = system, seed
 
     @cached_property
-    def room(self) -> Driven:
-        """Twenty seconds in a furnished room; who is slower has more time, so that it comes to a wall, too."""
+    def room(self) -> DriveResult:
+        """Twenty seconds in a furnished room; a slower robot gets more time, so that it also reaches a wall."""
         draw = random.Random(f"{self._seed}:room")
         return self._drive_at_own_pace(world_generation.furnished_room(draw), ROOM_SECONDS, draw)
 
     @cached_property
-    def corridor(self) -> Driven:
-        """A short corridor with one bend to the left or to the right, until the robot is round it."""
+    def corridor(self) -> DriveResult:
+        """A short corridor with one bend to the left or to the right, until the robot has passed it."""
 
-        def arrived(state: State) -> bool:
+        def has_arrived(state: State) -> bool:
             pose = state.robots[0].pose
             return bool(self._bend.share(np.array([pose.x]), np.array([pose.y])).max() >= 1.0)
 
         draw = random.Random(f"{self._seed}:corridor")
-        return self._drive_at_own_pace(self._bend.world, CORRIDOR_SECONDS, draw, arrived)
+        return self._drive_at_own_pace(self._bend.world, CORRIDOR_SECONDS, draw, has_arrived)
 
     @cached_property
-    def faulty(self) -> Driven:
-        """A large empty hall, with a lidar that dies and comes back, is blocked and comes free."""
+    def faulty_lidar(self) -> DriveResult:
+        """A large empty hall; the lidar dies and returns, then is blocked for a while."""
         draw = random.Random(f"{self._seed}:faulty")
         start = Pose(-5.0, draw.uniform(-0.5, 0.5), draw.uniform(-0.1, 0.1))
         hall = World.from_segments(box(13.0, 5.0).tolist(), name="an empty hall", starts=[start])
-        return self._drive(hall, FAULTY_SECONDS, draw, alter_scan=_alter)
+        return self._drive(hall, FAULTY_SECONDS, draw, alter_scan=_inject_faults)
 
     def share_of_corridor(self, recording: Recording) -> float:
-        """Return how much of the way to the end of the corridor the robot has made, at most 1."""
+        """Return the share of the way to the end of the corridor that the robot has driven, at most 1."""
         return float(self._bend.share(recording.poses[:, 0, 0], recording.poses[:, 0, 1]).max())
 
     @cached_property
@@ -82,52 +82,52 @@ class Drives:
         world: World,
         seconds: float,
         draw: random.Random,
-        arrived: Callable[[State], bool] = lambda state: False,
-    ) -> Driven:
-        """Drive until the robot has arrived, at most for so many seconds.
+        has_arrived: Callable[[State], bool] = lambda state: False,
+    ) -> DriveResult:
+        """Drive until the robot has arrived, for `seconds` at most.
 
-        Who drives or turns slower than the contract's speeds, which are the greatest, has as much more time.
+        A robot that is slower than the contract's maximum speeds gets proportionally more time.
         """
         pace = Pace()
 
         def is_over(state: State) -> bool:
-            pace.see(state)
-            return arrived(state) or state.time_ns / 1e9 >= seconds / pace.share
+            pace.add(state)
+            return has_arrived(state) or state.time_ns / 1e9 >= seconds / pace.share
 
-        return self._drive(world, seconds / SLOWEST, draw, until=is_over)
+        return self._drive(world, seconds / MIN_SPEED_SHARE, draw, until=is_over)
 
-    def _drive(self, world: World, seconds: float, draw: random.Random, **options: Any) -> Driven:
+    def _drive(self, world: World, seconds: float, draw: random.Random, **options: Any) -> DriveResult:
         simulation = Simulation(world, (RobotSpec(radius=RADIUS),), seed=draw.randrange(2**31))
         system = self._system()
-        began = system.seconds
-        done = drive(system.harness, simulation, seconds, **options)
-        return Driven(done.recording, system.seconds - began, began, tuple(system.messages(began).commands))
+        start = system.seconds
+        result = drive(system.harness, simulation, seconds, **options)
+        return DriveResult(result.recording, system.seconds - start, start, tuple(system.messages(start).commands))
 
 
 class Pace:
-    """How fast a robot drives and turns on average while it does, as a share of the contract's speeds."""
+    """A robot's average speed while it drives or turns, as a share of the contract's speeds."""
 
     def __init__(self) -> None:
         self._speeds: list[float] = []
         self._rates: list[float] = []
 
-    def see(self, state: State) -> None:
-        """Look at one more state of its drive."""
+    def add(self, state: State) -> None:
+        """Add the speeds of one state of the drive."""
         velocity = state.robots[0].velocity
-        for seen, now in ((self._speeds, velocity.linear), (self._rates, abs(velocity.angular))):
-            if now > STILL:
-                seen.append(now)
+        for values, value in ((self._speeds, velocity.linear), (self._rates, abs(velocity.angular))):
+            if value > STILL:
+                values.append(value)
 
     @property
     def share(self) -> float:
-        """The lesser of both shares, from `SLOWEST` to 1; what it has not done yet counts as 1."""
-        shares = (fmean(seen) / most for seen, most in ((self._speeds, SPEED), (self._rates, TURN)) if seen)
-        return max(SLOWEST, min(1.0, *shares, 1.0))
+        """The smaller of the shares of both speeds, from `MIN_SPEED_SHARE` to 1; a share without data counts as 1."""
+        shares = (fmean(values) / maximum for values, maximum in ((self._speeds, SPEED), (self._rates, TURN)) if values)
+        return max(MIN_SPEED_SHARE, min(1.0, *shares, 1.0))
 
 
 @dataclass(frozen=True)
 class Bend:
-    """A corridor along +x for `first` metres, then to a side for `second` metres.
+    """A corridor that runs along +x for `first` metres, then to a side for `second` metres.
 
     `side` is 1 for left (+y), -1 for right.
     """
@@ -138,12 +138,12 @@ class Bend:
     world: World
 
     def share(self, x: Floats, y: Floats) -> Floats:
-        """Return the share of the way that a robot at (x, y), metres, has made: to the bend, and on to the far end."""
+        """Return the share of the way to the far end that a robot at (x, y), in metres, has driven."""
         start = self.world.starts[0]
-        along = np.clip(x - start.x, 0.0, self.first - start.x)
-        up = np.where(x > self.first - 0.9, np.clip(self.side * y, 0.0, self.second), 0.0)
-        enough = self.first - start.x + self.second - 1.5  # it turns round before the end
-        share: Floats = np.minimum(1.0, (along + up) / enough)
+        before_bend = np.clip(x - start.x, 0.0, self.first - start.x)
+        beyond_bend = np.where(x > self.first - 0.9, np.clip(self.side * y, 0.0, self.second), 0.0)
+        length = self.first - start.x + self.second - 1.5  # the robot turns back before the end
+        share: Floats = np.minimum(1.0, (before_bend + beyond_bend) / length)
         return share
 
 
@@ -167,9 +167,9 @@ def draw_bend(draw: random.Random) -> Bend:
     return Bend(first, second, side, world)
 
 
-def _alter(scan: Scan, seconds: float) -> Scan | None:
-    if DARK.covers(seconds):
+def _inject_faults(scan: Scan, seconds: float) -> Scan | None:
+    if DEAD.covers(seconds):
         return None
     if BLOCKED.covers(seconds):
-        return blocked(scan)
+        return blocked_scan(scan)
     return scan

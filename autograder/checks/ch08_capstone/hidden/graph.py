@@ -1,4 +1,4 @@
-"""What the three nodes must have in the ROS graph, and what is there instead."""
+"""The expected endpoints of the three nodes in the ROS graph."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TWIST, _HEALTH = "geometry_msgs/msg/Twist", f"{INTERFACES}/msg/Health"
 
 @dataclass(frozen=True)
 class Endpoint:
-    """One end of a topic or service: whose it is, what kind, its name and type."""
+    """An endpoint of a topic or service: its node, kind, name and type."""
 
     node: str
     kind: str
@@ -43,35 +43,35 @@ def names_of(node: str) -> list[str]:
 
 
 def expect_endpoints(harness: Harness, name: str) -> None:
-    """Fail the check unless a node is there under its name, with all its ends; say what is there instead.
+    """Fail the check unless a node runs under its name and has all its endpoints.
 
     Args:
         harness: the student's programs.
-        name: the node's.
+        name: the name of the node.
     """
     nodes = harness.nodes()
     expect(f"/{name}" in nodes, f"No node is called /{name}; there is: {', '.join(nodes) or 'none'}.")
-    wanted = [endpoint for endpoint in ENDPOINTS if endpoint.node == name]
-    missing = [said for endpoint in wanted if (said := _describe_fault(harness.node, endpoint))]
-    expect(not missing, " ".join(missing), fraction=round(max(0.0, 1.0 - len(missing) / len(wanted)), 2))
+    expected = [endpoint for endpoint in ENDPOINTS if endpoint.node == name]
+    missing = [fault for endpoint in expected if (fault := _describe_fault(harness.node, endpoint))]
+    expect(not missing, " ".join(missing), fraction=round(max(0.0, 1.0 - len(missing) / len(expected)), 2))
 
 
-def _describe_fault(node: Node, wanted: Endpoint) -> str:
-    found = dict(_find(node, wanted.kind)(wanted.node, "/"))
-    types = found.get(wanted.name)
+def _describe_fault(node: Node, expected: Endpoint) -> str:
+    endpoints = dict(_graph_query(node, expected.kind)(expected.node, "/"))
+    types = endpoints.get(expected.name)
     if types is None:
-        near = nearest(wanted.name, found, 0.5)
-        instead = f"; it has {near}" if near else ""
-        return f"{wanted.node} has no {wanted.kind} {wanted.name}{instead}."
-    if list(types) != [wanted.type]:
-        return f"{wanted.node}: {wanted.name} has the type {', '.join(types)}, instead of {wanted.type}."
+        similar = nearest(expected.name, endpoints, 0.5)
+        instead = f"; it has {similar}" if similar else ""
+        return f"{expected.node} has no {expected.kind} {expected.name}{instead}."
+    if list(types) != [expected.type]:
+        return f"{expected.node}: {expected.name} has the type {', '.join(types)}, instead of {expected.type}."
     return ""
 
 
-def _find(node: Node, kind: str) -> Callable[[str, str], list[tuple[str, list[str]]]]:
-    finders: dict[str, Callable[[str, str], list[tuple[str, list[str]]]]] = {
+def _graph_query(node: Node, kind: str) -> Callable[[str, str], list[tuple[str, list[str]]]]:
+    queries: dict[str, Callable[[str, str], list[tuple[str, list[str]]]]] = {
         "publisher": node.get_publisher_names_and_types_by_node,
         "subscription": node.get_subscriber_names_and_types_by_node,
         "service": node.get_service_names_and_types_by_node,
     }
-    return finders[kind]
+    return queries[kind]

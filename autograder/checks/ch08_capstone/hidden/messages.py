@@ -1,4 +1,4 @@
-"""Step 3: the messages between the nodes, and the package that carries them."""
+"""Step 3: the messages between the nodes, and the package that defines them."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from autograder.checking import CheckFailed, Diagnosis, Workspace, expect, group
 from autograder.checking.probes import installed, manifest
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import INTERFACES
-from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, Message, differences
+from autograder.checks.ch08_capstone.support.messages import CLEARANCE, HEALTH, ExpectedMessage, differences
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
 
 check = group("step_3", doc=contract.INTERFACES_DOC)
-NEEDS = {
+DEPENDENCIES = {
     "buildtool": ("ament_cmake", "rosidl_default_generators"),
     "exec": ("rosidl_default_runtime", "std_msgs"),
 }
-TABLES = ("Compare with the table of step 3, letter by letter; comments are yours.",)
+DEFINITION_HINTS = ("Compare with the table of step 3, letter by letter; comments are up to you.",)
 
 
 @check(points=2, covers=("definitions", "clearance-header", "valid-field", "front", "left", "right"))
-@hint(*TABLES)
+@hint(*DEFINITION_HINTS)
 def test_clearance_message(workspace: Workspace) -> None:
     """Clearance.msg has the fields of the contract, in its order, with its types."""
-    _expect_like(workspace, CLEARANCE)
+    _expect_definition(workspace, CLEARANCE)
 
 
 @check(points=2, covers=("definitions", "levels", "health-header", "level-field", "silent-field"))
-@hint(*TABLES)
+@hint(*DEFINITION_HINTS)
 def test_health_message(workspace: Workspace) -> None:
     """Health.msg has the constants and fields of the contract, in its order, with its types."""
-    _expect_like(workspace, HEALTH)
+    _expect_definition(workspace, HEALTH)
 
 
 @check(points=2, covers=("interfaces-manifest", "interfaces-cmake"))
@@ -39,25 +39,25 @@ def test_health_message(workspace: Workspace) -> None:
 def test_interface_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds both messages, and the manifest declares what that takes."""
     require_built(builds, INTERFACES)
-    shared = installed.look(workspace.install, INTERFACES).shared
+    shared = installed.inspect_package(workspace.install, INTERFACES).shared
     for name in (CLEARANCE.name, HEALTH.name):
         expect(
             f"msg/{name}.msg" in shared,
             f"The build made no code for msg/{name}.msg: does CMakeLists.txt list it, and end with ament_package()?",
         )
-    found = manifest.read(source_of(workspace, INTERFACES))
-    for kind, names in NEEDS.items():
-        absent = [name for name in names if name not in found.needs(kind)]
+    package_xml = manifest.read(source_of(workspace, INTERFACES))
+    for kind, names in DEPENDENCIES.items():
+        absent = [name for name in names if name not in package_xml.needs(kind)]
         expect(not absent, f"package.xml has no {kind}_depend on {', '.join(absent)}.", fraction=0.5)
     expect(
-        "rosidl_interface_packages" in found.groups,
+        "rosidl_interface_packages" in package_xml.groups,
         "package.xml does not say <member_of_group>rosidl_interface_packages</member_of_group>.",
         fraction=0.5,
     )
 
 
-def _expect_like(workspace: Workspace, wanted: Message) -> None:
-    wrong = differences(workspace, wanted)
-    if wrong:
-        total = len(wanted.fields) + len(wanted.constants)
-        raise CheckFailed(" ".join(wrong[:3]), fraction=round(max(0.0, 1.0 - len(wrong) / total), 2) * 0.9)
+def _expect_definition(workspace: Workspace, expected: ExpectedMessage) -> None:
+    errors = differences(workspace, expected)
+    if errors:
+        total = len(expected.fields) + len(expected.constants)
+        raise CheckFailed(" ".join(errors[:3]), fraction=round(max(0.0, 1.0 - len(errors) / total), 2) * 0.9)

@@ -1,4 +1,4 @@
-"""Step 2, the nodes: how they look in the graph."""
+"""Step 2, the nodes: their names and endpoints in the ROS graph."""
 
 from __future__ import annotations
 
@@ -12,29 +12,31 @@ from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem
 
 check = group("step_2")
-MESSAGES = ("clearance_message", "interface_package")
-ENDS = (
+MESSAGE_CHECKS = ("clearance_message", "interface_package")
+ENDPOINT_HINTS = (
     "Start the node in a terminal and look: ros2 node info /navigation_controller.",
     "Relative names, without a slash: create_publisher(Twist, 'cmd_vel', 10).",
 )
 
 
-@check(points=1, covers="processor-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
-@hint(*ENDS)
+@check(points=1, covers="processor-name", needs=("build",), after=MESSAGE_CHECKS, doc=contract.NODES_DOC)
+@hint(*ENDPOINT_HINTS)
 def test_processor(shared_system: SharedSystem) -> None:
     """The node sensor_processor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(PROCESSOR).harness, PROCESSOR)
 
 
-@check(points=1, covers="controller-name", needs=("build",), after=MESSAGES, doc=contract.NODES_DOC)
-@hint(*ENDS)
+@check(points=1, covers="controller-name", needs=("build",), after=MESSAGE_CHECKS, doc=contract.NODES_DOC)
+@hint(*ENDPOINT_HINTS)
 def test_controller(shared_system: SharedSystem) -> None:
     """The node navigation_controller has its name, and its topics and its service with their types."""
     expect_endpoints(shared_system.get(CONTROLLER).harness, CONTROLLER)
 
 
-@check(points=1, covers="monitor-name", needs=("build",), after=(*MESSAGES, "health_message"), doc=contract.NODES_DOC)
-@hint(*ENDS)
+@check(
+    points=1, covers="monitor-name", needs=("build",), after=(*MESSAGE_CHECKS, "health_message"), doc=contract.NODES_DOC
+)
+@hint(*ENDPOINT_HINTS)
 def test_monitor(shared_system: SharedSystem) -> None:
     """The node status_monitor has its name, and its topics with their types."""
     expect_endpoints(shared_system.get(MONITOR).harness, MONITOR)
@@ -47,12 +49,12 @@ def test_monitor(shared_system: SharedSystem) -> None:
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace) -> None:
     """The names of all topics and of the service are relative: in the namespace /a, scan is /a/scan."""
-    left = [
-        said
+    errors = [
+        error
         for name in PROGRAMS
-        if (said := namespaces.missing_in_namespace(workspace, contract.PACKAGE, name, names_of(name)))
+        if (error := namespaces.missing_in_namespace(workspace, contract.PACKAGE, name, names_of(name)))
     ]
-    expect(not left, " ".join(left))
+    expect(not errors, " ".join(errors))
 
 
 @check(
@@ -67,12 +69,19 @@ def test_relative(workspace: Workspace) -> None:
 def test_qos(shared_system: SharedSystem) -> None:
     """A best-effort lidar reaches its two listeners, and a late joiner gets the last report of health."""
     graph = shared_system.get(PROCESSOR, MONITOR).harness.node
-    listeners, reporters = graph.get_subscriptions_info_by_topic("/scan"), graph.get_publishers_info_by_topic("/health")
-    expect(bool(listeners), "Nobody subscribes to scan.")
-    expect(bool(reporters), "Nobody publishes health.", fraction=0.5)
-    for peer in listeners:
-        reliable = peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE
-        expect(not reliable, f"{peer.node_name} asks for reliable scans: it would get none from a lidar.", fraction=0.5)
-    for peer in reporters:
-        durable = peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
-        expect(durable, f"{peer.node_name} keeps no report of health: its durability is volatile.", fraction=0.5)
+    subscriptions, publishers = (
+        graph.get_subscriptions_info_by_topic("/scan"),
+        graph.get_publishers_info_by_topic("/health"),
+    )
+    expect(bool(subscriptions), "Nobody subscribes to scan.")
+    expect(bool(publishers), "Nobody publishes health.", fraction=0.5)
+    for endpoint in subscriptions:
+        is_reliable = endpoint.qos_profile.reliability == ReliabilityPolicy.RELIABLE
+        expect(
+            not is_reliable,
+            f"{endpoint.node_name} asks for reliable scans: it would get none from a lidar.",
+            fraction=0.5,
+        )
+    for endpoint in publishers:
+        is_durable = endpoint.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        expect(is_durable, f"{endpoint.node_name} keeps no report of health: its durability is volatile.", fraction=0.5)

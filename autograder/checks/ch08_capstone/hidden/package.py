@@ -1,4 +1,4 @@
-"""Step 1: what package.xml declares, and what setup.py installs."""
+"""Step 1: the declarations in package.xml, and the files that setup.py installs."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from autograder.checks.ch08_capstone.support.contract import INTERFACES, LICENCE
 from autograder.checks.ch08_capstone.support.sources import require_built, source_of
 
 check = group("step_1", doc=contract.PACKAGES_DOC)
+# Dependencies of the launch file, and of the tests.
 FOR_LAUNCH = ("ament_index_python", "launch", "launch_ros")
 FOR_TESTS = ("ament_flake8", "ament_pep257", "launch_pytest")
 
@@ -22,17 +23,21 @@ FOR_TESTS = ("ament_flake8", "ament_pep257", "launch_pytest")
 def test_manifests(workspace: Workspace) -> None:
     """Both packages have a package.xml that ROS accepts, with the licence, the version and the right build type."""
     for name, build_type in ((PACKAGE, "ament_python"), (INTERFACES, "ament_cmake")):
-        found = manifest.read(source_of(workspace, name))
-        expect(found.format == 3, f"{name}/package.xml has format {found.format}, instead of 3.")
-        expect(found.version == VERSION, f"{name}/package.xml says version {found.version}, instead of {VERSION}.")
-        licences = ", ".join(found.licences)
+        package_xml = manifest.read(source_of(workspace, name))
+        expect(package_xml.format == 3, f"{name}/package.xml has format {package_xml.format}, instead of 3.")
         expect(
-            found.licences == (LICENCE,),
+            package_xml.version == VERSION,
+            f"{name}/package.xml says version {package_xml.version}, instead of {VERSION}.",
+        )
+        licences = ", ".join(package_xml.licences)
+        expect(
+            package_xml.licences == (LICENCE,),
             f"{name}/package.xml says licence {licences!r}: the SPDX identifier is {LICENCE}.",
         )
         expect(
-            found.build_type == build_type,
-            f"{name}/package.xml exports the build type {found.build_type or 'nothing'!r}, instead of {build_type}.",
+            package_xml.build_type == build_type,
+            f"{name}/package.xml exports the build type {package_xml.build_type or 'nothing'!r}, "
+            f"instead of {build_type}.",
         )
 
 
@@ -45,8 +50,8 @@ def test_manifests(workspace: Workspace) -> None:
 def test_dependencies(workspace: Workspace) -> None:
     """The manifest of the nodes declares every package that their code, launch file and tests use."""
     source = source_of(workspace, PACKAGE)
-    found = manifest.read(source)
-    missing = imports.missing(source, found)
+    package_xml = manifest.read(source)
+    missing = imports.missing(source, package_xml)
     expect(
         not missing["exec"], f"{imports.describe(missing['exec'])}: package.xml does not declare it as a dependency."
     )
@@ -56,7 +61,7 @@ def test_dependencies(workspace: Workspace) -> None:
         fraction=0.5,
     )
     for kind, names in (("exec", FOR_LAUNCH), ("test", FOR_TESTS)):
-        absent = [name for name in names if name not in found.needs("exec", kind)]
+        absent = [name for name in names if name not in package_xml.needs("exec", kind)]
         expect(not absent, f"package.xml has no {kind}_depend on {', '.join(absent)}.", fraction=0.5)
 
 
@@ -73,13 +78,17 @@ def test_build(builds: Mapping[str, Diagnosis]) -> None:
 @hint("install_scripts in setup.cfg says where they go; packages=find_packages(exclude=['test']) what they import.")
 def test_executables(workspace: Workspace) -> None:
     """The build installs the package's three executables where ros2 run looks."""
-    found = installed.look(workspace.install, PACKAGE)
-    absent = [name for name in PROGRAMS if name not in found.executables]
-    there = ", ".join(found.executables) or "none"
-    where = f" bin/, where ros2 run does not look, has {', '.join(found.misplaced)}." if found.misplaced else ""
+    installation = installed.inspect_package(workspace.install, PACKAGE)
+    absent = [name for name in PROGRAMS if name not in installation.executables]
+    executables = ", ".join(installation.executables) or "none"
+    misplaced_text = (
+        f" bin/, where ros2 run does not look, has {', '.join(installation.misplaced)}."
+        if installation.misplaced
+        else ""
+    )
     expect(
         not absent,
-        f"The executable {', '.join(absent)} is not installed; installed are: {there}.{where}",
+        f"The executable {', '.join(absent)} is not installed; installed are: {executables}.{misplaced_text}",
         fraction=round(0.9 * (1.0 - len(absent) / len(PROGRAMS)), 2),
     )
 
@@ -89,9 +98,9 @@ def test_executables(workspace: Workspace) -> None:
 @hint("('share/' + package_name + '/launch', glob('launch/*.launch.py')), and config likewise.")
 def test_shares(workspace: Workspace) -> None:
     """setup.py installs the manifest, the launch file and the configuration."""
-    found = installed.look(workspace.install, PACKAGE)
-    wanted = ("package.xml", f"launch/{contract.LAUNCH_FILE}", contract.CONFIG)
-    absent = [path for path in wanted if path not in found.shared]
+    installation = installed.inspect_package(workspace.install, PACKAGE)
+    expected = ("package.xml", f"launch/{contract.LAUNCH_FILE}", contract.CONFIG)
+    absent = [path for path in expected if path not in installation.shared]
     expect(not absent, f"share/{PACKAGE} has no {', '.join(absent)}: look at data_files.")
 
 
@@ -100,11 +109,11 @@ def test_shares(workspace: Workspace) -> None:
 @hint("glob('launch/*.launch.py') and glob('config/*.yaml') look at what is there when the package is built.")
 def test_grows(workspace: Workspace, draw: random.Random) -> None:
     """A new launch file and a new configuration are installed without a change of setup.py."""
-    word = f"maze_{draw.randrange(100, 1000)}"
-    added = (f"launch/{word}.launch.py", f"config/{word}.yaml")
-    shared = added_files.install_with(workspace, PACKAGE, added).shared
-    left = [path for path in added if path not in shared]
-    expect(not left, f"The new {' and '.join(left)} stayed behind: look at data_files.", fraction=0.5)
+    name = f"maze_{draw.randrange(100, 1000)}"
+    added_paths = (f"launch/{name}.launch.py", f"config/{name}.yaml")
+    shared = added_files.install_with(workspace, PACKAGE, added_paths).shared
+    absent = [path for path in added_paths if path not in shared]
+    expect(not absent, f"The new {' and '.join(absent)} stayed behind: look at data_files.", fraction=0.5)
 
 
 @check(
@@ -125,24 +134,26 @@ def test_grows(workspace: Workspace, draw: random.Random) -> None:
 @hint("data_files as ros2 pkg create writes it installs the marker and package.xml; ament_package() does it in CMake.")
 def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """package.xml and setup.py agree on version, licence and maintainer; ROS finds both packages by their markers."""
-    declared = manifest.read(source_of(workspace, PACKAGE))
-    installation = installed.look(workspace.install, PACKAGE)
-    said = installation.metadata
-    maintainer, address = next(iter(declared.maintainers), ("nobody", "nothing"))
-    for header, wanted in (
-        ("Version", declared.version),
-        ("License", ", ".join(declared.licences)),
+    package_xml = manifest.read(source_of(workspace, PACKAGE))
+    installation = installed.inspect_package(workspace.install, PACKAGE)
+    metadata = installation.metadata
+    maintainer, address = next(iter(package_xml.maintainers), ("nobody", "nothing"))
+    for header, expected in (
+        ("Version", package_xml.version),
+        ("License", ", ".join(package_xml.licences)),
         ("Maintainer", maintainer),
         ("Maintainer-email", address),
     ):
-        given = said.get(header, "nothing")
-        expect(given == wanted, f"{header.lower()}: package.xml says {wanted!r}, setup.py says {given!r}.")
+        actual = metadata.get(header, "nothing")
+        expect(actual == expected, f"{header.lower()}: package.xml says {expected!r}, setup.py says {actual!r}.")
     packaging.expect_installs_itself(installation)
     if builds[INTERFACES] is OK:
-        unknown = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
-        expect(installed.look(workspace.install, INTERFACES).marker, unknown, fraction=0.5)
-    told = declared.description
-    expect(manifest.PLACEHOLDER not in told, f"package.xml describes the package as {told!r}.", fraction=0.5)
+        message = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
+        expect(installed.inspect_package(workspace.install, INTERFACES).marker, message, fraction=0.5)
+    description = package_xml.description
+    expect(
+        manifest.PLACEHOLDER not in description, f"package.xml describes the package as {description!r}.", fraction=0.5
+    )
     modules = [f"{PACKAGE}.{name}" for name in PROGRAMS]
     absent = [module for module in modules if module not in installation.modules]
     expect(not absent, f"There is no module {', '.join(absent)}, which the table of step 1 names.", fraction=0.5)

@@ -1,4 +1,4 @@
-"""Step 7: colcon test finds the tests, and all of them pass, the linters too."""
+"""Step 7: colcon test runs the tests and the linters, and all of them pass."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from autograder.checks.ch08_capstone.support.contract import PACKAGE
 
 check = group("step_7", doc=contract.TESTING_DOC)
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
-SHOWN = 5
-GIVEN = ("test/test_integration.py", "test/conftest.py")
+MAX_SHOWN = 5  # the largest number of failed tests that a message shows
+GIVEN_FILES = ("test/test_integration.py", "test/conftest.py")
 
 
 @pytest.fixture(scope="module")
 def tested(workspace: Workspace) -> student_test_reports.Report:
-    """What colcon test says, once for all checks."""
+    """The report of colcon test, which runs once for all checks."""
     return colcon_test.colcon_test(workspace, PACKAGE)
 
 
@@ -27,14 +27,16 @@ def tested(workspace: Workspace) -> student_test_reports.Report:
 def test_colcon_finds_tests(tested: student_test_reports.Report) -> None:
     """Colcon test finds the package's tests: the student's own, the integration test and both linters."""
     colcon_test.expect_ended(tested)
-    ran = tested.executed
-    expect(bool(ran), "colcon test ran no test at all.")
-    modules = sorted({test.partition("::")[0] for test in ran})
-    broken = [f" {test}: {message}" for test, message in tested.claims.messages.items() if message and test in ran]
+    executed_tests = tested.executed
+    expect(bool(executed_tests), "colcon test ran no test at all.")
+    modules = sorted({test.partition("::")[0] for test in executed_tests})
+    broken_messages = [
+        f" {test}: {message}" for test, message in tested.claims.messages.items() if message and test in executed_tests
+    ]
     for name in ("test_sectors", "test_integration", "test_flake8", "test_pep257"):
         expect(
             name in modules,
-            f"No test of {name}.py ran; there ran: {', '.join(modules)}.{''.join(broken[:1])}",
+            f"No test of {name}.py ran; there ran: {', '.join(modules)}.{''.join(broken_messages[:1])}",
         )
 
 
@@ -44,12 +46,12 @@ def test_colcon_finds_tests(tested: student_test_reports.Report) -> None:
 def test_linters_pass(workspace: Workspace, tested: student_test_reports.Report) -> None:
     """The linters flake8 and pep257 report no errors."""
     for name in LINTERS:
-        verdict = tested.claims.verdicts.get(name)
+        outcome = tested.claims.verdicts.get(name)
         expect(
-            verdict is student_test_reports.ClaimedOutcome.PASSED,
+            outcome is student_test_reports.ClaimedOutcome.PASSED,
             f"{name}: {tested.claims.messages.get(name) or 'it did not run'}",
         )
-    linters.expect_tidy(workspace, student_test_runs.take(workspace, PACKAGE), LINTERS)
+    linters.expect_tidy(workspace, student_test_runs.read_source(workspace, PACKAGE), LINTERS)
 
 
 @check(
@@ -73,10 +75,12 @@ def test_linters_pass(workspace: Workspace, tested: student_test_reports.Report)
 def test_tests_pass(workspace: Workspace, tested: student_test_reports.Report) -> None:
     """Every test of the package passes, the one that launches the whole system, too, which is as it was given."""
     expect(any(name not in LINTERS for name in tested.executed), "colcon test ran no test but those of the linters.")
-    bad = [name for name in tested.failed if name not in LINTERS]
+    failed_tests = [name for name in tested.failed if name not in LINTERS]
     messages = tested.claims.messages
-    shown = "; ".join(f"{name}: {messages.get(name, '')}" for name in bad[:SHOWN])
-    expect(not bad, f"{len(bad)} of {len(tested.executed)} tests fail: {shown}")
-    kept, solution = student_test_runs.take(workspace, PACKAGE).files, solution_path(PACKAGE)
-    changed = given_files.changed_files(kept, {name: (solution / name).read_bytes() for name in GIVEN}, ("test",))
-    expect(not changed, f"{' and '.join(changed)} should be as given, and was changed.", fraction=0.5)
+    failures = "; ".join(f"{name}: {messages.get(name, '')}" for name in failed_tests[:MAX_SHOWN])
+    expect(not failed_tests, f"{len(failed_tests)} of {len(tested.executed)} tests fail: {failures}")
+    files, solution = student_test_runs.read_source(workspace, PACKAGE).files, solution_path(PACKAGE)
+    changed_names = given_files.changed_files(
+        files, {name: (solution / name).read_bytes() for name in GIVEN_FILES}, ("test",)
+    )
+    expect(not changed_names, f"{' and '.join(changed_names)} should be as given, and was changed.", fraction=0.5)

@@ -1,4 +1,4 @@
-"""Step 6: the student's tests of the sectors, against a right version and against broken ones."""
+"""Step 6: the student's tests of the sectors, run on a correct version of sectors.py and on faulty ones."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from autograder.checking import CheckFailed, Workspace, expect, group, hint
 from autograder.checking.probes import student_test_reports, student_test_runs
-from autograder.checks.ch08_capstone.hidden.versions import FAULTS, Fault, faulty, right
+from autograder.checks.ch08_capstone.hidden.versions import FAULTS, Fault, correct_version, faulty_versions
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 from autograder.checks.ch08_capstone.support.sources import source_of
@@ -20,52 +20,54 @@ MIN_TESTS = 4
 
 
 @dataclass(frozen=True)
-class Examined:
-    """What the tests say of a right version, and of faulty ones."""
+class SectorTestReports:
+    """The reports of the tests on a correct version, and on faulty ones."""
 
-    right: student_test_reports.Report
+    correct: student_test_reports.Report
     faulty: tuple[tuple[Fault, student_test_reports.Report], ...]
 
 
 @pytest.fixture(scope="module")
-def examined(workspace: Workspace, seed: int) -> Examined:
-    """The runs of the student's tests, in a drawn order, once for all checks."""
+def examined(workspace: Workspace, seed: int) -> SectorTestReports:
+    """The reports of the student's tests, which run once for all checks, in a random order of the versions."""
     if not (source_of(workspace, PACKAGE) / "test" / FILE).is_file():
         raise CheckFailed(f"There is no test/{FILE} in the package {PACKAGE}.")
     draw = random.Random(f"{seed}:sectors")
-    versions = [right(draw), *faulty(FAULTS, draw)]
+    versions = [correct_version(draw), *faulty_versions(FAULTS, draw)]
     order = draw.sample(range(len(versions)), len(versions))
-    source = student_test_runs.take(workspace, PACKAGE)
-    wanted = [student_test_reports.TestRun((FILE,), versions[i]) for i in order]  # all are called alike
-    runs = student_test_runs.run(workspace, source, wanted)
-    by_version = dict(zip(order, runs, strict=True))
-    return Examined(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(FAULTS, 1)))
+    source = student_test_runs.read_source(workspace, PACKAGE)
+    test_runs = [student_test_reports.TestRun((FILE,), versions[i]) for i in order]  # each run has the same arguments
+    reports = student_test_runs.run(workspace, source, test_runs)
+    by_version = dict(zip(order, reports, strict=True))
+    return SectorTestReports(by_version[0], tuple((fault, by_version[i]) for i, fault in enumerate(FAULTS, 1)))
 
 
 @check(points=2, covers="sector-tests", doc=contract.TESTING_DOC)
 @hint("Run pytest on test/test_sectors.py in a terminal, in the package's folder.")
 @hint("Import nothing of the package but robot_navigation_tutorial.sectors: the tests meet other versions of it.")
-def test_sector_tests_pass(examined: Examined) -> None:
+def test_sector_tests_pass(examined: SectorTestReports) -> None:
     """The tests of the sectors pass on a right sectors.py, and there are at least four of them."""
-    report = examined.right
+    report = examined.correct
     if report.failed:
         raise CheckFailed(
             f"On a right sectors.py, {student_test_reports.shown_name(report.failed[0])} in {FILE} fails."
         )
-    ended = "before it could say how they went" if report.status is None else f"with exit status {report.status}"
-    expect(report.passed, f"On a right sectors.py, pytest ran no test in {FILE}: it ended {ended}.")
-    few = f"Fewer than {MIN_TESTS} tests ran: that is too few to say that nearest is right."
-    expect(len(report.executed) >= MIN_TESTS, few, fraction=0.5)
+    ending = "before it could say how they went" if report.status is None else f"with exit status {report.status}"
+    expect(report.passed, f"On a right sectors.py, pytest ran no test in {FILE}: it ended {ending}.")
+    message = f"Fewer than {MIN_TESTS} tests ran: that is too few to say that nearest is right."
+    expect(len(report.executed) >= MIN_TESTS, message, fraction=0.5)
 
 
 @check(points=4, covers="sector-tests", after=("sector_tests_pass",), doc=contract.REP_117)
 @hint("One test a line of the contract: nan, +inf, -inf, a phantom, an empty sector, left and right, angle_min.")
 @hint("Put the odd reading before a wall and after it: the order of the beams must not matter.")
-def test_sector_tests_find_faults(examined: Examined) -> None:
+def test_sector_tests_find_faults(examined: SectorTestReports) -> None:
     """The tests of the sectors fail on broken versions of sectors.py."""
-    missed = [fault.what for fault, report in examined.faulty if not report.detects_fault(examined.right)]
+    missed_faults = [
+        fault.description for fault, report in examined.faulty if not report.detects_fault(examined.correct)
+    ]
     expect(
-        not missed,
-        f"Your tests are content with {'; with '.join(missed)}.",
-        fraction=round(1.0 - len(missed) / len(examined.faulty), 2),
+        not missed_faults,
+        f"Your tests are content with {'; with '.join(missed_faults)}.",
+        fraction=round(1.0 - len(missed_faults) / len(examined.faulty), 2),
     )

@@ -1,4 +1,4 @@
-"""Signals over a robot's run, for formulas to judge: how far it went in the dark, how often it changed its mind."""
+"""Signals of a robot's run for temporal formulas: its speed, its path, and its changes of direction."""
 
 from __future__ import annotations
 
@@ -14,55 +14,55 @@ from sim import Recording, Scan
 
 Floats = NDArray[np.float64]
 
-TURNS = 0.05  # rad/s: anything slower is no turn
+MIN_TURN_RATE = 0.05  # rad/s: a slower rotation is not a turn
 
 
 @dataclass(frozen=True)
 class LidarFault:
-    """A stretch of a drive, in seconds since its start, in which the lidar is dead or blocked."""
+    """An interval of a drive, in seconds since its start, in which the lidar is dead or blocked."""
 
     name: str
     start: float
     end: float
 
     def covers(self, seconds: float) -> bool:
-        """Return whether a scan of that time is concerned."""
+        """Return whether the fault affects a scan at this time."""
         return self.start <= seconds < self.end
 
 
 def speeds(recording: Recording) -> Floats:
-    """Return how fast the robot really moves, m/s, one value a state."""
-    found: Floats = np.abs(recording.velocities[:, 0, 0])
-    return found
+    """Return the true speed of the robot in m/s, one value for each state."""
+    absolute: Floats = np.abs(recording.velocities[:, 0, 0])
+    return absolute
 
 
 def driven_since(recording: Recording, start: float) -> Floats:
-    """Return the metres driven since a time, one value a state, 0 before it."""
-    metres = blindness.path(recording)
+    """Return how many metres were driven since a time: one value for each state, 0 before that time."""
+    metres = blindness.driven_distances(recording)
     at_start = float(np.interp(start, recording.times, metres))
     return np.where(recording.times < start, 0.0, metres - at_start)
 
 
-def changes_of_mind(times: Sequence[float], rates: Sequence[float], within: float) -> list[float]:
-    """Count how often a turn followed one to the other side, in the newest `within` seconds; one value a command.
+def changes_of_direction(times: Sequence[float], rates: Sequence[float], window: float) -> list[float]:
+    """For each command, count how often a turn in the last `window` seconds followed one to the other side.
 
     Args:
-        times: of the commands, seconds, rising.
-        rates: their turn rates, rad/s, left is positive.
-        within: seconds.
+        times: the times of the commands in seconds, in ascending order.
+        rates: their turn rates in rad/s; left is positive.
+        window: the length of the time before each command, in seconds.
     """
-    changed: list[float] = []
+    changes: list[float] = []
     side = 0.0
     counts = []
     for now, rate in zip(times, rates, strict=True):
-        if abs(rate) > TURNS:
+        if abs(rate) > MIN_TURN_RATE:
             if side * rate < 0:
-                changed.append(now)
+                changes.append(now)
             side = math.copysign(1.0, rate)
-        counts.append(float(sum(now - when <= within for when in changed)))
+        counts.append(float(sum(now - change <= window for change in changes)))
     return counts
 
 
-def blocked(scan: Scan) -> Scan:
-    """Return the scan of a lidar with a hand in front of it: no reading counts."""
+def blocked_scan(scan: Scan) -> Scan:
+    """Return the scan of a blocked lidar, in which every reading is nan."""
     return replace(scan, ranges=np.full_like(scan.ranges, np.nan))

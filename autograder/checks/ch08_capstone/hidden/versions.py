@@ -1,4 +1,4 @@
-"""Versions of the module sectors that a student's tests meet: one is right, the others have one fault each."""
+"""The versions of sectors.py on which the student's tests run: a correct one, and others with one fault each."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from autograder.checking import GraderError
 from autograder.checking.probes import versions
 from autograder.checks.ch08_capstone.support.contract import PACKAGE, SECTORS
 
-RIGHT = """
+CORRECT = """
 import math
 
 FRONT = 0.0
@@ -37,14 +37,14 @@ def nearest(scan, middle, half_angle):
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault, in words and as a change of the right text."""
+    """A fault: its description, and the edit of the correct version that introduces it."""
 
-    what: str
+    description: str
     find: str
     replace: str
 
 
-FAULTS = (  # those that the notebook names
+FAULTS = (  # the notebook names these faults
     Fault(
         "a nan that hides what comes after it",
         "        if math.isnan(reading):\n            continue\n",
@@ -68,22 +68,22 @@ FAULTS = (  # those that the notebook names
 )
 
 
-def right(draw: random.Random) -> versions.Version:
-    """Return the right version."""
-    return _version(RIGHT, draw)
+def correct_version(draw: random.Random) -> versions.Version:
+    """Return the correct version."""
+    return _obfuscated_version(CORRECT, draw)
 
 
-def faulty(faults: Sequence[Fault], draw: random.Random) -> list[versions.Version]:
+def faulty_versions(faults: Sequence[Fault], draw: random.Random) -> list[versions.Version]:
     """Return a version for each fault."""
-    return [_version(_with(fault), draw) for fault in faults]
+    return [_obfuscated_version(_apply(fault), draw) for fault in faults]
 
 
-def _with(fault: Fault) -> str:
-    if RIGHT.count(fault.find) != 1:
-        raise GraderError(f"the fault {fault.what!r} no longer fits the right version")
-    return RIGHT.replace(fault.find, fault.replace)
+def _apply(fault: Fault) -> str:
+    if CORRECT.count(fault.find) != 1:
+        raise GraderError(f"the fault {fault.description!r} no longer fits the right version")
+    return CORRECT.replace(fault.find, fault.replace)
 
 
-def _version(text: str, draw: random.Random) -> versions.Version:
+def _obfuscated_version(text: str, draw: random.Random) -> versions.Version:
     files = {f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": text}
     return versions.obfuscate(versions.Version(files, {}), draw.randrange(2**31))

@@ -1,4 +1,4 @@
-"""Step 2, the whole: the robot in hidden worlds, judged by temporal logic over its track."""
+"""Step 2, the whole system: the robot's drives through hidden worlds, tested by temporal logic over its track."""
 
 from __future__ import annotations
 
@@ -13,53 +13,56 @@ from autograder.checks.ch02_nodes.hidden import blindness
 from autograder.checks.ch02_nodes.support.robot import describe_command
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden import tracks
-from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DARK, Driven, Drives
+from autograder.checks.ch08_capstone.hidden.drives import BLOCKED, DEAD, DriveResult, Drives
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, TOLERANCE
-from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still
+from autograder.checks.ch08_capstone.support.expectations import expect_driving, expect_still
+from autograder.checks.ch08_capstone.support.system import System
 from sim import clearance
 from sim.rows import row_at, state_at
 
 check = group("step_2")
 SAFE = "gap > 0.01"  # m between the footprint and the nearest thing
-STEADY = "changes < 3.5"  # turns that followed one to the other side, in the newest MEMORY seconds
-MEMORY = 6.0  # s
-STOPPING = 0.3  # m: 0.5 s until the data are stale, and what a chain at 10 Hz and a motor add, at 0.3 m/s
-BLIND_STOPPING = 0.15  # m: a blocked lidar says so at once
+STEADY = "changes < 3.5"  # turns that followed a turn to the other side, in the last WINDOW seconds
+WINDOW = 6.0  # s in which changes of direction are counted
+STOPPING_DISTANCE = 0.3  # m at 0.3 m/s: 0.5 s until data are stale, and delays of the nodes at 10 Hz and of the motor
+BLOCKED_STOPPING_DISTANCE = 0.15  # m: the scans of a blocked lidar are invalid immediately
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
-STANDS = 0.01  # m/s
-ROOM_SHARE = 1 / 3  # of the way that it could drive at its speed: it turns, too
-DROVE = 0.1  # of the way that the contract's speed allows: who has not come so far did not drive
-STANDS_AFTER = 1.5  # s: 0.5 s until the data are stale, and time to brake
-AHEAD = 1.0  # m: it turns for what is within 0.6 m, and until 0.7 m are clear
-BACK_WITHIN = 2.0  # s
-BESIDE = 0.15  # m, little more than range_min
+STILL = 0.01  # m/s: a slower robot stands still
+ROOM_SHARE = 1 / 3  # of the way that it could drive at its speed: it also has to turn
+MIN_WAY_SHARE = 0.1  # of the way at the contract's speed: a robot that covers less did not drive
+STOP_SECONDS = 1.5  # s: 0.5 s until the data are stale, and time to brake
+AHEAD = 1.0  # m: the robot turns if a thing is within 0.6 m, until 0.7 m ahead are clear
+RESTART_SECONDS = 2.0  # s within which the robot drives again
+SIDE_DISTANCE = 0.15  # m, little more than range_min
 SECTOR = 35.0  # degrees to each side of a middle, a little more than half_angle
-PICTURE = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
+PICTURE_HINT = ("Look at the picture: what did the lidar see at the marked instant, and at which bearing?",)
 
 
 @check(points=3, covers=("turn", "starts-turn"), needs=("build",), after=("drives", "turns"))
-@hint(*PICTURE)
+@hint(*PICTURE_HINT)
 def test_touches_nothing(drives: Drives, driving: System, artifacts: Artifacts) -> None:
     """It drives through a furnished room for twenty seconds and touches nothing."""
-    driven = drives.room
-    recording = driven.recording
+    result = drives.room
+    recording = result.recording
     verdict = temporal.always(SAFE, recording.times.tolist(), {"gap": recording.clearances[:, 0].tolist()})
     rules = {"the gap to the nearest thing, in m, is above 0.01": verdict}
     if verdict.violated_at is not None:
-        when = verdict.violated_at
-        what = clearance(recording.simulation, state_at(recording, row_at(recording, when))).what
-        sentence = f"It touched {what} at t = {when:.1f} s."
-        share = when / driven.seconds if blindness.turns_at_things(recording, AHEAD, until=when) else 0.0
-        _fail(artifacts, driven, sentence, when, "touches", share, rules)
-    metres = float(blindness.path(recording)[-1])
-    _keep(artifacts, driven, f"{metres:.1f} m in {driven.seconds:.0f} s, nothing touched.", rules)
+        touch_time = verdict.violated_at
+        obstacle = clearance(recording.simulation, state_at(recording, row_at(recording, touch_time))).name
+        sentence = f"It touched {obstacle} at t = {touch_time:.1f} s."
+        share = touch_time / result.seconds if blindness.turns_at_obstacles(recording, AHEAD, until=touch_time) else 0.0
+        _fail(artifacts, result, sentence, touch_time, "touches", share, rules)
+    metres = float(blindness.driven_distances(recording)[-1])
+    _save_track(artifacts, result, f"{metres:.1f} m in {result.seconds:.0f} s, nothing touched.", rules)
     speeds = tracks.speeds(recording)
-    moving = speeds[speeds > STANDS]
-    pace = min(SPEED, float(moving.mean())) if moving.size else 0.0
-    said = f"It touched nothing, but drove only {metres:.1f} m in {driven.seconds:.0f} s, at {pace:.2f} m/s on average."
-    expect(pace > 0.0 and metres >= ROOM_SHARE * pace * driven.seconds, said)
-    turns = blindness.turns_at_things(recording, AHEAD)
+    moving_speeds = speeds[speeds > STILL]
+    pace = min(SPEED, float(moving_speeds.mean())) if moving_speeds.size else 0.0
+    message = (
+        f"It touched nothing, but drove only {metres:.1f} m in {result.seconds:.0f} s, at {pace:.2f} m/s on average."
+    )
+    expect(pace > 0.0 and metres >= ROOM_SHARE * pace * result.seconds, message)
+    turns = blindness.turns_at_obstacles(recording, AHEAD)
     expect(turns, f"It touched nothing, but hardly turned where something was within {AHEAD:.1f} m ahead.")
     _expect_no_touch(driving)
 
@@ -69,18 +72,26 @@ def test_touches_nothing(drives: Drives, driving: System, artifacts: Artifacts) 
 @hint("self.turn remembers it; the sides are compared only when a turn begins.")
 def test_keeps_its_mind(drives: Drives, artifacts: Artifacts) -> None:
     """It does not swing to and fro between left and right."""
-    turned = False
-    for driven in (drives.room, drives.corridor):
-        times = [command.seconds - driven.began for command in driven.commands]
-        rates = [command.message.angular.z for command in driven.commands]
-        turns = blindness.turns_at_things(driven.recording, AHEAD)
-        turned = turned or turns
-        verdict = temporal.always(STEADY, times, {"changes": tracks.changes_of_mind(times, rates, MEMORY)})
+    has_turned = False
+    for result in (drives.room, drives.corridor):
+        times = [command.seconds - result.start for command in result.commands]
+        rates = [command.message.angular.z for command in result.commands]
+        turns = blindness.turns_at_obstacles(result.recording, AHEAD)
+        has_turned = has_turned or turns
+        verdict = temporal.always(STEADY, times, {"changes": tracks.changes_of_direction(times, rates, WINDOW)})
         if verdict.violated_at is not None:
-            when, rules = verdict.violated_at, {f"at most three changes of mind in {MEMORY:.0f} s": verdict}
-            sentence = f"It changed its mind more than three times in {MEMORY:.0f} s, up to t = {when:.1f} s."
-            _fail(artifacts, driven, sentence, when, "to and fro", when / driven.seconds if turns else 0.0, rules)
-    expect(turned, "It never turned for something ahead, neither in a room nor in a corridor with a bend.")
+            violation_time, rules = verdict.violated_at, {f"at most three changes of mind in {WINDOW:.0f} s": verdict}
+            sentence = f"It changed its mind more than three times in {WINDOW:.0f} s, up to t = {violation_time:.1f} s."
+            _fail(
+                artifacts,
+                result,
+                sentence,
+                violation_time,
+                "to and fro",
+                violation_time / result.seconds if turns else 0.0,
+                rules,
+            )
+    expect(has_turned, "It never turned for something ahead, neither in a room nor in a corridor with a bend.")
 
 
 @check(points=3, covers=("drive", "more-room"), needs=("build",), after=("drives", "turns"))
@@ -88,14 +99,14 @@ def test_keeps_its_mind(drives: Drives, artifacts: Artifacts) -> None:
 @hint("A robot that turns too far looks back to where it came from: a turn ends when the way is clear.")
 def test_gets_on(drives: Drives, driving: System, artifacts: Artifacts) -> None:
     """It finds its way round the bend of a corridor."""
-    driven = drives.corridor
-    share = drives.share_of_corridor(driven.recording)
-    caption = f"{100 * share:.0f} % of the way to the far end of the corridor in {driven.seconds:.0f} s."
+    result = drives.corridor
+    share = drives.share_of_corridor(result.recording)
+    caption = f"{100 * share:.0f} % of the way to the far end of the corridor in {result.seconds:.0f} s."
     if share < 1.0:
-        turns = blindness.turns_at_things(driven.recording, AHEAD)
-        _fail(artifacts, driven, f"It came {caption}", driven.seconds, "no further", 0.9 * share if turns else 0.0)
-    _keep(artifacts, driven, caption)
-    _expect_drive_between(driving)
+        turns = blindness.turns_at_obstacles(result.recording, AHEAD)
+        _fail(artifacts, result, f"It came {caption}", result.seconds, "no further", 0.9 * share if turns else 0.0)
+    _save_track(artifacts, result, caption)
+    _expect_drive_past_things(driving)
 
 
 @check(points=3, covers="untrusted", needs=("build",), after=("drives", "stops"))
@@ -103,30 +114,32 @@ def test_gets_on(drives: Drives, driving: System, artifacts: Artifacts) -> None:
 @hint("A clearance that is not valid means stop at once.")
 def test_stops_in_time(drives: Drives, driving: System, artifacts: Artifacts) -> None:
     """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
-    driven, rules = drives.faulty, {}
-    metres = float(np.interp(DARK.start, driven.recording.times, blindness.path(driven.recording)))
-    said = f"In the {DARK.start:.0f} s before its lidar died it drove {metres:.2f} m: who stops has driven before."
-    expect(metres >= DROVE * SPEED * DARK.start, said)
-    times, speed = driven.recording.times, tracks.speeds(driven.recording)
-    for trouble, most in ((DARK, STOPPING), (BLOCKED, BLIND_STOPPING)):
-        there = (times >= trouble.start) & (times < trouble.end)
-        metres = tracks.driven_since(driven.recording, trouble.start)[there].tolist()
-        verdict = temporal.always(f"metres < {most}", times[there].tolist(), {"metres": metres})
-        rules[f"the way since the lidar was {trouble.name}, in m, is below {most:.2f}"] = verdict
+    result, rules = drives.faulty_lidar, {}
+    metres = float(np.interp(DEAD.start, result.recording.times, blindness.driven_distances(result.recording)))
+    message = f"In the {DEAD.start:.0f} s before its lidar died it drove {metres:.2f} m: who stops has driven before."
+    expect(metres >= MIN_WAY_SHARE * SPEED * DEAD.start, message)
+    times, speed = result.recording.times, tracks.speeds(result.recording)
+    for fault, max_metres in ((DEAD, STOPPING_DISTANCE), (BLOCKED, BLOCKED_STOPPING_DISTANCE)):
+        is_faulty = (times >= fault.start) & (times < fault.end)
+        metres = tracks.driven_since(result.recording, fault.start)[is_faulty].tolist()
+        verdict = temporal.always(f"metres < {max_metres}", times[is_faulty].tolist(), {"metres": metres})
+        rules[f"the way since the lidar was {fault.name}, in m, is below {max_metres:.2f}"] = verdict
         if verdict.violated_at is not None:
             sentence = (
-                f"The lidar was {trouble.name} from t = {trouble.start:.0f} s on; at t = {verdict.violated_at:.1f} s "
-                f"the robot had driven {most:.2f} m since then and had not stopped."
+                f"The lidar was {fault.name} from t = {fault.start:.0f} s on; at t = {verdict.violated_at:.1f} s "
+                f"the robot had driven {max_metres:.2f} m since then and had not stopped."
             )
-            fraction = 0.0 if trouble is DARK else 0.5
-            _fail(artifacts, driven, sentence, verdict.violated_at, "still drives", fraction, rules)
-        late = times[_stands_in(trouble, times) & (speed > STANDS)]
-        if late.size:
-            since = f"The lidar was {trouble.name} from t = {trouble.start:.0f} s on"
-            sentence = f"{since}; at t = {late[0]:.1f} s the robot still drove."
-            _fail(artifacts, driven, sentence, float(late[0]), "still drives", 0.0 if trouble is DARK else 0.5, rules)
+            fraction = 0.0 if fault is DEAD else 0.5
+            _fail(artifacts, result, sentence, verdict.violated_at, "still drives", fraction, rules)
+        late_times = times[_should_stand(fault, times) & (speed > STILL)]
+        if late_times.size:
+            beginning = f"The lidar was {fault.name} from t = {fault.start:.0f} s on"
+            sentence = f"{beginning}; at t = {late_times[0]:.1f} s the robot still drove."
+            _fail(
+                artifacts, result, sentence, float(late_times[0]), "still drives", 0.0 if fault is DEAD else 0.5, rules
+            )
     caption = "the lidar died and came back, was blocked and came free; the robot stood still meanwhile."
-    _keep(artifacts, driven, caption, rules)
+    _save_track(artifacts, result, caption, rules)
     _expect_half_blind_stop(driving)
 
 
@@ -134,85 +147,87 @@ def test_stops_in_time(drives: Drives, driving: System, artifacts: Artifacts) ->
 @hint("Look at the newest clearance every time: a stop is no state to be stuck in.")
 def test_drives_again(drives: Drives, artifacts: Artifacts) -> None:
     """Within 2 s of its lidar's return it drives again."""
-    driven = drives.faulty
-    times, speed = driven.recording.times, tracks.speeds(driven.recording)
-    stood = any((speed[_stands_in(trouble, times)] <= STANDS).all() for trouble in (DARK, BLOCKED))
-    expect(stood, "It did not stand still while its lidar was dead or blocked: who never stops cannot drive again.")
-    for trouble in (DARK, BLOCKED):
-        after = (times >= trouble.end) & (times <= trouble.end + BACK_WITHIN)
-        moves = bool((speed[after] > STANDS).any())
+    result = drives.faulty_lidar
+    times, speed = result.recording.times, tracks.speeds(result.recording)
+    stood_still = any((speed[_should_stand(fault, times)] <= STILL).all() for fault in (DEAD, BLOCKED))
+    expect(
+        stood_still, "It did not stand still while its lidar was dead or blocked: who never stops cannot drive again."
+    )
+    for fault in (DEAD, BLOCKED):
+        is_after = (times >= fault.end) & (times <= fault.end + RESTART_SECONDS)
+        moves = bool((speed[is_after] > STILL).any())
         if not moves:
             sentence = (
-                f"The lidar was {trouble.name} until t = {trouble.end:.0f} s; {BACK_WITHIN:.0f} s later it still stood."
+                f"The lidar was {fault.name} until t = {fault.end:.0f} s; {RESTART_SECONDS:.0f} s later it still stood."
             )
-            _fail(artifacts, driven, sentence, trouble.end, "could drive", 0.0 if trouble is DARK else 0.5)
+            _fail(artifacts, result, sentence, fault.end, "could drive", 0.0 if fault is DEAD else 0.5)
 
 
-def _stands_in(trouble: tracks.LidarFault, times: tracks.Floats) -> NDArray[np.bool_]:
-    """Return at which of the times the robot should stand still because of a trouble."""
-    found: NDArray[np.bool_] = (times >= trouble.start + STANDS_AFTER) & (times < trouble.end)
-    return found
+def _should_stand(fault: tracks.LidarFault, times: tracks.Floats) -> NDArray[np.bool_]:
+    """Return a mask of the times at which the robot should stand still because of a lidar fault."""
+    mask: NDArray[np.bool_] = (times >= fault.start + STOP_SECONDS) & (times < fault.end)
+    return mask
 
 
 def _expect_no_touch(system: System) -> None:
-    """Fail the check if the robot drives towards something that is too near to measure: in the room nothing is."""
-    system.see(OPEN)
-    said = system.see(scan(Part(-SECTOR, SECTOR, -math.inf), fill=math.inf)).commands
-    system.see(OPEN, 0.2)  # the next drive begins without a turn
-    bad = next((command.message for command in said if command.message.linear.x > TOLERANCE), None)
-    did = "" if bad is None else describe_command(bad)
-    near = "With -inf from every beam ahead, something too near to measure"
-    expect(bad is None, f"{near}, the robot {did}: it should turn on the spot.", fraction=0.85)
+    """Fail the check if the robot drives towards something that is too near to measure, as nothing in the room is."""
+    system.publish_scans(OPEN)
+    commands = system.publish_scans(scan(Part(-SECTOR, SECTOR, -math.inf), fill=math.inf)).commands
+    system.publish_scans(OPEN, 0.2)  # ends the turn, so that the next drive starts without one
+    wrong = next((command.message for command in commands if command.message.linear.x > TOLERANCE), None)
+    action = "" if wrong is None else describe_command(wrong)
+    situation = "With -inf from every beam ahead, something too near to measure"
+    expect(wrong is None, f"{situation}, the robot {action}: it should turn on the spot.", fraction=0.85)
 
 
 def _expect_half_blind_stop(system: System) -> None:
-    """Fail the check unless the robot stands still when one side is blocked; in lockstep from the first command on."""
+    """Fail the check unless the robot stands still when one side is blocked, in lockstep from the first command on."""
     for side, middle in (("left", 90.0), ("right", -90.0)):
-        system.see(OPEN)
-        began = system.seconds
-        said = system.see(scan(Part(middle - SECTOR, middle + SECTOR, math.nan), fill=math.inf)).commands
+        system.publish_scans(OPEN)
+        start = system.seconds
+        commands = system.publish_scans(scan(Part(middle - SECTOR, middle + SECTOR, math.nan), fill=math.inf)).commands
         if system.harness.time == LOCKSTEP:
-            said = system.messages(began).commands
-        expect_still(said, f"With nan from every beam on the {side}, and the way ahead clear", fraction=0.85)
+            commands = system.messages(start).commands
+        expect_still(commands, f"With nan from every beam on the {side}, and the way ahead clear", fraction=0.85)
 
 
-def _expect_drive_between(system: System) -> None:
-    """Fail the check unless the robot drives on where the way is clear, however near things are beside it."""
-    system.see(OPEN)
-    for where, middles, reading in (
+def _expect_drive_past_things(system: System) -> None:
+    """Fail the check unless the robot drives while the way ahead is clear, even with things close beside it."""
+    system.publish_scans(OPEN)
+    for place, middles, reading in (
         ("on the left", (90.0,), -math.inf),
         ("on the right", (-90.0,), -math.inf),
-        ("on both sides", (90.0, -90.0), BESIDE),
+        ("on both sides", (90.0, -90.0), SIDE_DISTANCE),
     ):
         parts = [Part(middle - SECTOR, middle + SECTOR, reading) for middle in middles]
-        said = system.see(scan(*parts, fill=math.inf)).commands
-        situation = f"With {reading:g} from every beam {where}, and the way ahead clear"
-        expect_driving(said, situation, SPEED, fraction=0.85)
+        commands = system.publish_scans(scan(*parts, fill=math.inf)).commands
+        situation = f"With {reading:g} from every beam {place}, and the way ahead clear"
+        expect_driving(commands, situation, SPEED, fraction=0.85)
 
 
 Rules = Mapping[str, temporal.Verdict]
 
 
-def _keep(artifacts: Artifacts, driven: Driven, caption: str, rules: Rules | None = None) -> None:
-    world = driven.recording.simulation.world.name
-    artifacts.track("track", driven.recording, f"The robot's track in {world}: {caption}", rules=rules)
+def _save_track(artifacts: Artifacts, result: DriveResult, caption: str, rules: Rules | None = None) -> None:
+    world = result.recording.simulation.world.name
+    artifacts.track("track", result.recording, f"The robot's track in {world}: {caption}", rules=rules)
 
 
 def _fail(
     artifacts: Artifacts,
-    driven: Driven,
+    result: DriveResult,
     sentence: str,
-    when: float,
+    seconds: float,
     note: str,
     fraction: float,
     rules: Rules | None = None,
 ) -> None:
-    world = driven.recording.simulation.world.name
+    world = result.recording.simulation.world.name
     artifacts.track(
         "track",
-        driven.recording,
+        result.recording,
         f"The robot's track in {world}. {sentence}",
-        mark=min(when, driven.seconds),
+        mark=min(seconds, result.seconds),
         note=note,
         rules=rules,
     )

@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 08_capstone share."""
+"""Code that the visible and the hidden checks of 08_capstone share."""

@@ -1,4 +1,4 @@
-"""The right clearance of a scan, by the sentences of step 2: what a controller is told that is judged alone."""
+"""The clearance that step 2 of the notebook requires for a scan, for a controller that is tested alone."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from sensor_msgs.msg import LaserScan
 
 from autograder.checks.ch08_capstone.support.contract import PARAMETERS, PROCESSOR
 
-MIDDLES = {"front": 0.0, "left": math.pi / 2, "right": -math.pi / 2}  # rad
+MIDDLES = {"front": 0.0, "left": math.pi / 2, "right": -math.pi / 2}  # rad: the middles of the sectors
 HALF_ANGLE = PARAMETERS[PROCESSOR]["half_angle"].default
 
 
-def right_clearance(kind: type, scan: LaserScan) -> Any:
-    """Return the clearance, a message of this type, that belongs to a scan; its header is the scan's own."""
+def expected_clearance(message_type: type, scan: LaserScan) -> Any:
+    """Return the expected clearance of a scan as a message of this type, with the scan's header."""
     distances = {name: nearest(scan, middle) for name, middle in MIDDLES.items()}
-    return kind(header=scan.header, valid=not any(map(math.isnan, distances.values())), **distances)
+    return message_type(header=scan.header, valid=not any(map(math.isnan, distances.values())), **distances)
 
 
 def nearest(scan: LaserScan, middle: float, half_angle: float = HALF_ANGLE) -> float:
-    """Return the nearest reading that counts within `half_angle` of `middle`, in metres; nan if none does."""
+    """Return the nearest valid reading within `half_angle` of `middle`, in metres; nan if there is none."""
     readings = [
         float(reading)
         for index, reading in enumerate(scan.ranges)

@@ -1,4 +1,4 @@
-"""The contract of the exercise, in numbers, and the names that the checks use."""
+"""Numbers and names in the exercise's contract."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ INTERFACES = "robot_navigation_interfaces"
 PROCESSOR, CONTROLLER, MONITOR = PROGRAMS = ("sensor_processor", "navigation_controller", "status_monitor")
 LAUNCH_FILE = "navigation.launch.py"
 CONFIG = "config/navigation.yaml"
-SECTORS = "sectors"  # the module that the student's tests are about
+SECTORS = "sectors"  # the module under test in the student's tests
 
 VERSION = "0.1.0"
 LICENCE = "Apache-2.0"
 
-WATCHED = ("scan", "clearance", "cmd_vel")
+WATCHED_TOPICS = ("scan", "clearance", "cmd_vel")
 OK, DEGRADED, FAILED = range(3)
 LEVELS = ("OK", "DEGRADED", "FAILED")
-SAID_WITHIN = 2.0  # s: a report every 0.5 s, of a silence of 1.0 s
+REPORT_DEADLINE = 2.0  # s: a topic is silent after 1.0 s, and reports are 0.5 s apart
 
-TOLERANCE = 0.005  # m; and m/s, rad/s: a tenth of the least forward_speed, and more than a 32-bit float loses
+TOLERANCE = 0.005  # m, m/s, rad/s: 10 % of the smallest forward_speed, and above the rounding error of float32
 
 
 @dataclass(frozen=True)
-class Bounded:
+class BoundedParameter:
     """A parameter: its default and its range, in SI units."""
 
     default: float
@@ -32,15 +32,15 @@ class Bounded:
     highest: float
 
 
-PARAMETERS: Mapping[str, Mapping[str, Bounded]] = {
-    PROCESSOR: {"half_angle": Bounded(0.52, 0.1, 0.78)},
+PARAMETERS: Mapping[str, Mapping[str, BoundedParameter]] = {
+    PROCESSOR: {"half_angle": BoundedParameter(0.52, 0.1, 0.78)},
     CONTROLLER: {
-        "forward_speed": Bounded(0.3, 0.05, 0.5),
-        "turn_speed": Bounded(0.8, 0.1, 1.5),
-        "safety_distance": Bounded(0.6, 0.3, 2.0),
-        "data_timeout": Bounded(0.5, 0.2, 2.0),
+        "forward_speed": BoundedParameter(0.3, 0.05, 0.5),
+        "turn_speed": BoundedParameter(0.8, 0.1, 1.5),
+        "safety_distance": BoundedParameter(0.6, 0.3, 2.0),
+        "data_timeout": BoundedParameter(0.5, 0.2, 2.0),
     },
-    MONITOR: {"silence_timeout": Bounded(1.0, 0.2, 1.4)},
+    MONITOR: {"silence_timeout": BoundedParameter(1.0, 0.2, 1.4)},
 }
 
 _DOCS = "https://docs.ros.org/en/jazzy"

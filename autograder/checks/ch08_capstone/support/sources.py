@@ -1,4 +1,4 @@
-"""The student's two packages as folders, and whether they were built."""
+"""The folders of the student's two packages, and whether they were built."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ def source_of(workspace: Workspace, package: str) -> Path:
     """Return the folder of a package's source.
 
     Raises:
-        CheckFailed: there is none.
+        CheckFailed: there is no such package.
     """
     source = workspace.root / "src"
-    found, broken = find_packages(source)
-    folder = found.get(package)
+    packages, broken = find_packages(source)
+    folder = packages.get(package)
     if folder is None:
         sentence = broken.get(source / package, f"There is no package {package} in src.")
         raise CheckFailed(explain(Diagnosis(Kind.MISSING_PACKAGE, sentence), source, package).sentence)
@@ -27,7 +27,7 @@ def require_built(builds: Mapping[str, Diagnosis], *packages: str) -> None:
     """Fail the check unless colcon has built the packages.
 
     Raises:
-        CheckFailed: it has not; the message says why.
+        CheckFailed: a package was not built; the message says why.
     """
     for package in packages:
         if builds[package] is not OK:

@@ -1,9 +1,9 @@
-"""The student's three programs, shown scans and asked for what they say."""
+"""The student's three programs, to which checks publish scans, and the messages that they publish."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -20,30 +20,20 @@ from autograder.checking import (
     ReceivedMessage,
     Shared,
     Workspace,
-    expect,
 )
 from autograder.checking.probes import installed, parameters
-from autograder.checks.ch02_nodes.support.robot import describe_command
-from autograder.checks.ch08_capstone.support.clearances import right_clearance
-from autograder.checks.ch08_capstone.support.contract import (
-    CONTROLLER,
-    LEVELS,
-    PACKAGE,
-    PROCESSOR,
-    PROGRAMS,
-    TOLERANCE,
-    name_of,
-)
-from autograder.checks.ch08_capstone.support.messages import Types, load_messages, types
+from autograder.checks.ch08_capstone.support.clearances import expected_clearance
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PACKAGE, PROCESSOR, PROGRAMS, name_of
+from autograder.checks.ch08_capstone.support.messages import MessageTypes, load_messages, message_types
 
-SETTLED = 0.35  # s: a scan has gone through both nodes by then, and a command at 10 Hz has followed
-ANSWER_SECONDS = 5.0  # s of ROS time for a service
-ALONE_SECONDS = 1.6  # s at the start without a scan: the first three reports
+SETTLED = 0.35  # s: by then, a scan has passed through both nodes, and a command at 10 Hz has followed
+ANSWER_SECONDS = 5.0  # s of ROS time for the response of a service
+NO_SCAN_SECONDS = 1.6  # s at the start without a scan, enough for three reports
 
 
 @dataclass(frozen=True)
-class Received:
-    """The messages of the system during a stretch of time, in the order in which they came."""
+class SystemMessages:
+    """The messages that the system published in an interval, in the order in which they came."""
 
     clearances: tuple[ReceivedMessage, ...]
     commands: tuple[ReceivedMessage, ...]
@@ -51,63 +41,65 @@ class Received:
 
 
 class System:
-    """The three programs; stepped together, a scan, its clearance and the command that follows belong to one step.
+    """The three programs in one harness.
+
+    In lockstep, a scan, its clearance and the command that follows belong to one step.
 
     Args:
-        workspace: where they are installed.
-        types: of the student's messages.
-        needed: those without which it is of no use; the others may be missing, or fail.
-        clock_rate: seconds that the programs' machine counts in a second of ROS time; always 1 in real time.
-        absent: programs that are not started; what they publish can be sent in their place.
-        stands_in: whether the right clearance of each scan is sent in the place of an absent sensor_processor.
+        workspace: the workspace in which they are installed.
+        types: the types of the student's messages.
+        needed: programs that have to run; the others may be missing, or fail.
+        clock_rate: seconds on the clocks of the programs' machine in a second of ROS time; always 1 in real time.
+        absent: programs that are not started; checks can send the messages that these would publish.
+        sends_clearances: whether the expected clearance of each scan is sent if sensor_processor is absent.
 
     Attributes:
-        harness: where they run.
-        types: of the student's messages.
-        first: what they said before the first scan.
+        harness: the harness in which they run.
+        types: the types of the student's messages.
+        before_first_scan: the messages that the programs published before the first scan.
     """
 
     def __init__(
         self,
         workspace: Workspace,
-        types: Types,
+        types: MessageTypes,
         needed: Collection[str] = PROGRAMS,
         clock_rate: float = 1.0,
         absent: Collection[str] = (),
         *,
-        stands_in: bool = False,
+        sends_clearances: bool = False,
     ) -> None:
-        self.types, self._stands_in = types, stands_in and PROCESSOR in absent
-        published = {PROCESSOR: ("/clearance", types.clearance), CONTROLLER: ("/cmd_vel", Twist)}
-        there = [n for n in PROGRAMS if n not in absent and (n in needed or _is_installed(workspace, n))]
+        self.types, self._sends_clearances = types, sends_clearances and PROCESSOR in absent
+        outputs = {PROCESSOR: ("/clearance", types.clearance), CONTROLLER: ("/cmd_vel", Twist)}
+        started_names = [n for n in PROGRAMS if n not in absent and (n in needed or _is_installed(workspace, n))]
         self.harness = AutoHarness(
             workspace,
-            programs=tuple(Program(PACKAGE, name) for name in there),
-            publishes={"/scan": LaserScan, **dict(published[name] for name in published if name in absent)},
+            programs=tuple(Program(PACKAGE, name) for name in started_names),
+            publishes={"/scan": LaserScan, **dict(outputs[name] for name in outputs if name in absent)},
             subscribes={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
             clock_rate=clock_rate,
         )
-        self.need(needed)
+        self.require(needed)
 
     def __enter__(self) -> System:
         self.harness.__enter__()
         try:
-            self.first = self.wait(ALONE_SECONDS)
+            self.before_first_scan = self.wait(NO_SCAN_SECONDS)
         except BaseException:
             self.harness.__exit__(None, None, None)
             raise
         return self
 
-    def __exit__(self, *ending: object) -> None:
+    def __exit__(self, *exc_info: object) -> None:
         self.harness.__exit__(None, None, None)
 
-    def need(self, needed: Collection[str]) -> None:
-        """Say without which programs it is of no use from now on."""
+    def require(self, needed: Collection[str]) -> None:
+        """Set the programs that have to run from now on; the others may fail."""
         self.harness.optional = frozenset(PROGRAMS) - frozenset(needed)
 
-    def serves(self, needed: Collection[str]) -> bool:
-        """Return whether these programs are there."""
-        return self.harness.running.issuperset(needed)
+    def runs(self, programs: Collection[str]) -> bool:
+        """Return whether all these programs are running."""
+        return self.harness.running.issuperset(programs)
 
     @property
     def processes(self) -> tuple[Process, ...]:
@@ -135,63 +127,63 @@ class System:
         return parameters.NodeParameters(self.harness, name_of(program))
 
     @contextmanager
-    def changed(self, program: str, name: str, value: float) -> Iterator[parameters.SetParametersReply]:
-        """Change a parameter for a while; yield the program's reply."""
-        asked = self.parameters_of(program)
-        before = asked.values(name)
-        reply = asked.change({name: value}) if before else parameters.SetParametersReply(accepted=False)
+    def changed_parameter(self, program: str, name: str, value: float) -> Iterator[parameters.SetParametersReply]:
+        """Change a parameter within a `with` block; yield the program's reply."""
+        node = self.parameters_of(program)
+        before = node.values(name)
+        reply = node.change({name: value}) if before else parameters.SetParametersReply(accepted=False)
         try:
             yield reply
         finally:
             if reply.accepted:
-                asked.change(before)  # what it was, as another check asks whether it is the contract's default
+                node.change(before)  # another check tests whether the value is the contract's default
 
-    def see(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> Received:
-        """Show a scan ten times a second; return what is said once there was time to react.
+    def publish_scans(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> SystemMessages:
+        """Publish a scan ten times a second; return the messages since the programs had time to react.
 
         Args:
-            scan: what the lidar sees.
+            scan: the scan; each copy gets its own stamp.
             seconds: for how long.
-            age: how old the scans' stamps are when they come.
+            age: how old the scans' stamps are when they arrive, in seconds.
         """
-        began = self.seconds
+        start = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
-            self.show(scan, age)
-        return self.messages(began + SETTLED)
+            self.publish_scan(scan, age)
+        return self.messages(start + SETTLED)
 
-    def show(self, scan: LaserScan, age: float = 0.0) -> None:
-        """Show one scan and let 0.1 s pass."""
+    def publish_scan(self, scan: LaserScan, age: float = 0.0) -> None:
+        """Publish one scan and let 0.1 s pass."""
         self.send("/scan", scan, age)
         self.harness.run(SCAN_SECONDS)
 
     def send(self, topic: str, message: Any, age: float = 0.0) -> None:
-        """Publish a message; a header's stamp is `age` seconds old when it comes."""
-        if self._stands_in and topic == "/scan":
-            self.send("/clearance", right_clearance(self.types.clearance, message), age)
+        """Publish a message; the stamp of a header is `age` seconds old when the message arrives."""
+        if self._sends_clearances and topic == "/scan":
+            self.send("/clearance", expected_clearance(self.types.clearance, message), age)
             return
         if hasattr(message, "header"):
             stamp = self.harness.next_ns - round(age * 1e9)
             message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
         self.harness.publish(topic, message)
 
-    def wait(self, seconds: float) -> Received:
-        """Show nothing for a while; return what was said in that time."""
-        began = self.seconds
+    def wait(self, seconds: float) -> SystemMessages:
+        """Publish nothing for a while; return the messages that come meanwhile."""
+        start = self.seconds
         self.harness.run(seconds)
-        return self.messages(began)
+        return self.messages(start)
 
-    def messages(self, since: float, until: float = math.inf) -> Received:
-        """Return what was said after `since`, in seconds of ROS time, and up to `until`."""
+    def messages(self, since: float, until: float = math.inf) -> SystemMessages:
+        """Return the messages after `since`, in seconds of ROS time, and up to `until`."""
         topics = ("/clearance", "/cmd_vel", "/health")
-        return Received(*(tuple(self.harness.messages(topic, since=since, until=until)) for topic in topics))
+        return SystemMessages(*(tuple(self.harness.messages(topic, since=since, until=until)) for topic in topics))
 
 
 class SharedSystem:
-    """Keeps one system for several checks, and starts it anew once one of its programs has ended.
+    """Keeps one system for several checks, and restarts it once one of its programs has ended.
 
     Args:
-        workspace: where the programs are installed.
-        clock_rate, absent, stands_in: as of `System`.
+        workspace: the workspace in which the programs are installed.
+        clock_rate, absent, sends_clearances: see `System`.
     """
 
     def __init__(
@@ -200,102 +192,39 @@ class SharedSystem:
         clock_rate: float = 1.0,
         absent: Collection[str] = (),
         *,
-        stands_in: bool = False,
+        sends_clearances: bool = False,
     ) -> None:
-        self._workspace, self._clock_rate, self._absent, self._stands_in = workspace, clock_rate, absent, stands_in
+        self._workspace, self._clock_rate, self._absent, self._sends_clearances = (
+            workspace,
+            clock_rate,
+            absent,
+            sends_clearances,
+        )
         self._needed: tuple[str, ...] = ()
-        self._shared = Shared(self._make, lambda system: system.serves(self._needed))
+        self._shared = Shared(self._start_system, lambda system: system.runs(self._needed))
 
     def get(self, *needed: str) -> System:
-        """Return a system in which these programs run; that others fail is no matter then."""
+        """Return a system in which these programs run; the others may fail."""
         self._needed = needed
         system = self._shared.get()
-        system.need(needed)
+        system.require(needed)
         return system
 
     def close(self) -> None:
-        """End the present system; the next check gets a new one."""
+        """End the current system; the next check gets a new one."""
         self._shared.close()
 
-    def _make(self) -> System:
-        kinds = types(load_messages(self._workspace))
-        return System(self._workspace, kinds, self._needed, self._clock_rate, self._absent, stands_in=self._stands_in)
-
-
-def expect_still(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
-    """Fail the check unless every command is zero."""
-    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should be told to stand still.")
-    bad = next((c for c in commands if not _stands(c)), None)
-    did = "" if bad is None else describe_command(bad.message)
-    expect(bad is None, f"{situation}, the robot {did}: it should stand still.", fraction=fraction)
-
-
-def expect_driving(
-    commands: Sequence[ReceivedMessage],
-    situation: str,
-    fastest: float,
-    *,
-    fraction: float = 0.0,
-    always: bool = False,
-) -> None:
-    """Fail the check unless the commands drive forward, at most at `fastest` m/s.
-
-    Who stands still now and then has an error that few checks see, which ask whether it drives `always`.
-    """
-    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should drive.")
-    bad = next((c for c in _judged(commands, always) if not 0.0 < c.message.linear.x <= fastest + TOLERANCE), None)
-    did = "" if bad is None else describe_command(bad.message)
-    expect(
-        bad is None,
-        f"{situation}, the robot {did}: it should drive forward, at most at {fastest:.2f} m/s.",
-        fraction=fraction,
-    )
-
-
-def expect_turning(
-    commands: Sequence[ReceivedMessage], situation: str, side: str, fastest: float, *, fraction: float = 0.0
-) -> None:
-    """Fail the check unless the commands turn on the spot to a side, at most at `fastest` rad/s.
-
-    As in `expect_driving`, it is no matter here whether the robot stands still now and then.
-    """
-    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should turn.")
-    sign = 1.0 if side == "left" else -1.0
-    bad = next(
-        (
-            c
-            for c in _judged(commands)
-            if not (_near(c.message.linear.x, 0.0) and 0.0 < sign * c.message.angular.z <= fastest + TOLERANCE)
-        ),
-        None,
-    )
-    did = "" if bad is None else describe_command(bad.message)
-    expect(
-        bad is None,
-        f"{situation}, the robot {did}: it should turn {side} on the spot, at most at {fastest:.2f} rad/s.",
-        fraction=fraction,
-    )
-
-
-def describe_report(report: Any) -> str:
-    """Put a report of the monitor into words."""
-    level = LEVELS[report.level] if 0 <= report.level < len(LEVELS) else str(report.level)
-    silent = ", ".join(str(topic)[:40] for topic in list(report.silent)[:5]) or "none"
-    return f"level {level}, silent: {silent}"
+    def _start_system(self) -> System:
+        types = message_types(load_messages(self._workspace))
+        return System(
+            self._workspace,
+            types,
+            self._needed,
+            self._clock_rate,
+            self._absent,
+            sends_clearances=self._sends_clearances,
+        )
 
 
 def _is_installed(workspace: Workspace, program: str) -> bool:
-    return program in installed.look(workspace.install, PACKAGE).executables
-
-
-def _judged(commands: Sequence[ReceivedMessage], always: bool = False) -> Sequence[ReceivedMessage]:
-    """Return the commands to be judged: those that move, or all where none does."""
-    return commands if always else [c for c in commands if not _stands(c)] or commands
-
-
-def _stands(command: ReceivedMessage) -> bool:
-    return _near(command.message.linear.x, 0.0) and _near(command.message.angular.z, 0.0)
-
-
-def _near(value: float, wanted: float) -> bool:
-    return abs(value - wanted) <= TOLERANCE  # false for nan
+    return program in installed.inspect_package(workspace.install, PACKAGE).executables

@@ -22,7 +22,8 @@ from autograder.checks.ch08_capstone.support.contract import (
     TOLERANCE,
     name_of,
 )
-from autograder.checks.ch08_capstone.support.system import System, expect_driving, expect_still, expect_turning
+from autograder.checks.ch08_capstone.support.expectations import expect_driving, expect_still, expect_turning
+from autograder.checks.ch08_capstone.support.system import System
 
 OPEN = scan(fill=3.0)
 
@@ -47,21 +48,28 @@ def test_starts(system: System) -> None:
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
 def test_sees(system: System) -> None:
     """Step 2: sensor_processor says how near things are ahead, on the left and on the right, and when it is blind."""
-    shown = scan(Part(-5.0, 5.0, 1.0), Part(80.0, 90.0, 1.5), Part(-90.0, -80.0, 2.0), fill=3.0)
-    found = system.see(shown).clearances
-    expect(bool(found), "No clearance came while scans did.")
-    newest = found[-1].message
-    own = newest.header.stamp == shown.header.stamp and newest.header.frame_id == shown.header.frame_id
-    expect(own, "The clearance's header is not that of its scan: it says when and where the scan was taken.")
-    given = (newest.front, newest.left, newest.right)
-    near = all(abs(one - other) <= TOLERANCE for one, other in zip(given, (1.0, 1.5, 2.0), strict=True))
-    shown_as = ", ".join(f"{distance:.2f}" for distance in given)
-    expect(
-        near and newest.valid,
-        f"front, left, right were {shown_as}, valid {newest.valid}, not 1.00, 1.50, 2.00, valid True.",
+    published_scan = scan(Part(-5.0, 5.0, 1.0), Part(80.0, 90.0, 1.5), Part(-90.0, -80.0, 2.0), fill=3.0)
+    clearances = system.publish_scans(published_scan).clearances
+    expect(bool(clearances), "No clearance came while scans did.")
+    newest = clearances[-1].message
+    is_same_header = (
+        newest.header.stamp == published_scan.header.stamp and newest.header.frame_id == published_scan.header.frame_id
     )
-    blind = system.see(scan(Part(-35.0, 35.0, math.nan))).clearances
-    expect(bool(blind) and not blind[-1].message.valid, "With nan from every beam ahead, the clearance was valid.")
+    expect(is_same_header, "The clearance's header is not that of its scan: it says when and where the scan was taken.")
+    distances = (newest.front, newest.left, newest.right)
+    is_near = all(
+        abs(distance - expected) <= TOLERANCE for distance, expected in zip(distances, (1.0, 1.5, 2.0), strict=True)
+    )
+    distances_text = ", ".join(f"{distance:.2f}" for distance in distances)
+    expect(
+        is_near and newest.valid,
+        f"front, left, right were {distances_text}, valid {newest.valid}, not 1.00, 1.50, 2.00, valid True.",
+    )
+    blind_clearances = system.publish_scans(scan(Part(-35.0, 35.0, math.nan))).clearances
+    expect(
+        bool(blind_clearances) and not blind_clearances[-1].message.valid,
+        "With nan from every beam ahead, the clearance was valid.",
+    )
 
 
 @check(points=1, covers=("drive", "turn", "untrusted"), group="step_2", needs=("sees",), doc=contract.NODES_DOC)
@@ -69,28 +77,35 @@ def test_sees(system: System) -> None:
 @hint("Way clear: linear.x = forward_speed. Something ahead: angular.z towards the side with more room.")
 def test_moves(system: System) -> None:
     """Step 2: navigation_controller drives, turns away, keeps its direction, and stands still when it sees nothing."""
-    expect_still(system.first.commands, "Before the first scan")
-    expect_driving(system.see(OPEN).commands, "With 3 m of free space all around", 0.3)
+    expect_still(system.before_first_scan.commands, "Before the first scan")
+    expect_driving(system.publish_scans(OPEN).commands, "With 3 m of free space all around", 0.3)
     wall = scan(Part(-10.0, 10.0, 0.4), Part(70.0, 110.0, 1.0), fill=3.0)
-    expect_turning(system.see(wall).commands, "With a wall 0.4 m ahead and less room on the left", "right", 0.8)
+    expect_turning(
+        system.publish_scans(wall).commands, "With a wall 0.4 m ahead and less room on the left", "right", 0.8
+    )
     wall = scan(Part(-10.0, 10.0, 0.4), Part(-110.0, -70.0, 0.9), fill=3.0)
-    expect_turning(system.see(wall).commands, "In its turn to the right, and now with less room there", "right", 0.8)
-    system.see(OPEN)
-    expect_still(system.see(OPEN, age=0.9).commands, "With scans that come, and whose stamps are 0.9 s old")
-    system.see(OPEN)
-    began = system.seconds
+    expect_turning(
+        system.publish_scans(wall).commands, "In its turn to the right, and now with less room there", "right", 0.8
+    )
+    system.publish_scans(OPEN)
+    expect_still(system.publish_scans(OPEN, age=0.9).commands, "With scans that come, and whose stamps are 0.9 s old")
+    system.publish_scans(OPEN)
+    start = system.seconds
     system.wait(1.5)
-    expect_still(system.messages(began + 1.0).commands, "A second after the last scan")
+    expect_still(system.messages(start + 1.0).commands, "A second after the last scan")
 
 
 @check(points=1, covers=("enable", "disabled"), group="step_2", needs=("moves",), doc=contract.SERVICE_DOC)
 @hint("self.create_service(SetBool, 'enable', self.enable_callback); the callback returns the response.")
 def test_enable(system: System) -> None:
     """Step 2: the service enable holds the robot still and lets it go; success is true each time."""
-    for data, expect_it in ((False, expect_still), (True, lambda seen, when: expect_driving(seen, when, 0.3))):
-        answer = system.call(SetBool, "/enable", SetBool.Request(data=data))
-        expect(answer.success, f"Asked with data {data}, it answered success false.")
-        expect_it(system.see(OPEN).commands, f"After enable with data {data}")
+    for data, expect_commands in (
+        (False, expect_still),
+        (True, lambda commands, situation: expect_driving(commands, situation, 0.3)),
+    ):
+        response = system.call(SetBool, "/enable", SetBool.Request(data=data))
+        expect(response.success, f"Asked with data {data}, it answered success false.")
+        expect_commands(system.publish_scans(OPEN).commands, f"After enable with data {data}")
 
 
 @check(points=1, covers="level", group="step_2", needs=("sees",), doc=contract.NODES_DOC)
@@ -98,20 +113,22 @@ def test_enable(system: System) -> None:
 @hint("Remember when each topic was last heard; only a timer can hear the silence.")
 def test_watches(system: System) -> None:
     """Step 2: status_monitor says OK, DEGRADED when the lidar is blocked, and FAILED within 2 s when it is dead."""
-    for what, seen, wanted in (
-        ("With scans", system.see(OPEN, 2.0), OK),
-        ("With nan from every beam ahead", system.see(scan(Part(-35.0, 35.0, math.nan)), 2.0), DEGRADED),
+    for situation, messages, expected in (
+        ("With scans", system.publish_scans(OPEN, 2.0), OK),
+        ("With nan from every beam ahead", system.publish_scans(scan(Part(-35.0, 35.0, math.nan)), 2.0), DEGRADED),
         ("2 s after the last scan", system.wait(2.0), FAILED),
     ):
-        expect(bool(seen.reports), f"{what}, no report came on health.")
-        level = seen.reports[-1].message.level
-        said = LEVELS[level] if 0 <= level < len(LEVELS) else level
-        expect(level == wanted, f"{what}, health was {said} instead of {LEVELS[wanted]}.")
-    silent = sorted(seen.reports[-1].message.silent)
+        expect(bool(messages.reports), f"{situation}, no report came on health.")
+        level = messages.reports[-1].message.level
+        level_name = LEVELS[level] if 0 <= level < len(LEVELS) else level
+        expect(level == expected, f"{situation}, health was {level_name} instead of {LEVELS[expected]}.")
+    silent = sorted(messages.reports[-1].message.silent)
     expect(silent == ["clearance", "scan"], f"2 s after the last scan, silent was {silent}.")
-    offered = system.harness.node.get_publishers_info_by_topic("/health")
-    durable = [end.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for end in offered]
-    expect(bool(durable) and all(durable), "health is not transient local: who joins late hears nothing at first.")
+    publishers = system.harness.node.get_publishers_info_by_topic("/health")
+    is_durable = [publisher.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for publisher in publishers]
+    expect(
+        bool(is_durable) and all(is_durable), "health is not transient local: who joins late hears nothing at first."
+    )
 
 
 @check(
@@ -124,15 +141,17 @@ def test_watches(system: System) -> None:
 @hint("declare(self, 'safety_distance', 0.6, 0.3, 2.0, '...') in __init__, and so on.")
 def test_parameters(system: System) -> None:
     """Step 5: each node declares its parameters with their defaults and ranges."""
-    for node, wanted in PARAMETERS.items():
-        asked = system.parameters_of(node)
-        missing = parameters.missing_sentence(wanted, asked.names())
+    for node, bounds_by_name in PARAMETERS.items():
+        node_parameters = system.parameters_of(node)
+        missing = parameters.missing_sentence(bounds_by_name, node_parameters.names())
         expect(not missing, f"{node}: {missing}")
-        wrong = parameters.differences(asked.values(*wanted), {name: bounds.default for name, bounds in wanted.items()})
-        expect(not wrong, f"{node}: {'; '.join(wrong)}.")
-        for name, descriptor in asked.descriptors(*wanted).items():
-            ranges = [(each.from_value, each.to_value) for each in descriptor.floating_point_range]
-            bounds = wanted[name]
+        differences = parameters.differences(
+            node_parameters.values(*bounds_by_name), {name: bounds.default for name, bounds in bounds_by_name.items()}
+        )
+        expect(not differences, f"{node}: {'; '.join(differences)}.")
+        for name, descriptor in node_parameters.descriptors(*bounds_by_name).items():
+            ranges = [(limits.from_value, limits.to_value) for limits in descriptor.floating_point_range]
+            bounds = bounds_by_name[name]
             expect(
                 ranges == [(bounds.lowest, bounds.highest)], f"{node}: the range of {name} is not that of the table."
             )
@@ -143,8 +162,8 @@ def test_parameters(system: System) -> None:
 def test_changed(system: System) -> None:
     """Step 5: forward_speed, set to 0.12 m/s while the system runs, has an effect immediately."""
     controller = system.parameters_of(CONTROLLER)
-    answer = controller.change({"forward_speed": 0.12})
-    expect(answer.accepted, f"It refused 0.12 m/s: {answer.reason}")
-    commands = system.see(OPEN).commands
+    reply = controller.change({"forward_speed": 0.12})
+    expect(reply.accepted, f"It refused 0.12 m/s: {reply.reason}")
+    commands = system.publish_scans(OPEN).commands
     controller.change({"forward_speed": 0.3})
     expect_driving(commands, "With forward_speed 0.12", 0.12)

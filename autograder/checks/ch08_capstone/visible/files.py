@@ -1,4 +1,4 @@
-"""Steps 1 and 3: do the two packages build, and are the messages as the contract says?"""
+"""Steps 1 and 3: the build of the two packages, and the definitions of the messages."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ from autograder.checks.ch08_capstone.support.sources import require_built, sourc
 @hint("setup(name=..., version=..., packages=find_packages(exclude=['test']), entry_points={...}, ...)")
 def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Step 1: robot_navigation_tutorial builds, installs three executables, and declares what it imports."""
-    found = manifest.read(source_of(workspace, PACKAGE))
+    package_xml = manifest.read(source_of(workspace, PACKAGE))
     require_built(builds, PACKAGE)
-    there = installed.look(workspace.install, PACKAGE).executables
-    absent = [name for name in PROGRAMS if name not in there]
+    executables = installed.inspect_package(workspace.install, PACKAGE).executables
+    absent = [name for name in PROGRAMS if name not in executables]
     expect(
-        not absent, f"The executable {', '.join(absent)} is not installed; installed are: {', '.join(there) or 'none'}."
+        not absent,
+        f"The executable {', '.join(absent)} is not installed; installed are: {', '.join(executables) or 'none'}.",
     )
-    missing = imports.missing(source_of(workspace, PACKAGE), found)
+    missing = imports.missing(source_of(workspace, PACKAGE), package_xml)
     expect(not missing["exec"], f"{imports.describe(missing['exec'])}: package.xml does not declare it.")
 
 
@@ -32,8 +33,8 @@ def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
 @hint("Compare with the tables of step 3, letter by letter.", "float32 front, bool valid, std_msgs/Header header.")
 def test_definitions(workspace: Workspace) -> None:
     """Step 3: both messages have the fields and constants of the contract."""
-    wrong = [*differences(workspace, CLEARANCE), *differences(workspace, HEALTH)]
-    expect(not wrong, " ".join(wrong[:3]))
+    errors = [*differences(workspace, CLEARANCE), *differences(workspace, HEALTH)]
+    expect(not errors, " ".join(errors[:3]))
 
 
 @check(points=1, covers="interfaces-manifest", group="step_3", doc=contract.INTERFACES_DOC)
@@ -42,6 +43,6 @@ def test_definitions(workspace: Workspace) -> None:
 def test_interfaces_build(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Step 3: colcon builds the package of the messages."""
     require_built(builds, INTERFACES)
-    shared = installed.look(workspace.install, INTERFACES).shared
+    shared = installed.inspect_package(workspace.install, INTERFACES).shared
     absent = [name for name in ("Clearance", "Health") if f"msg/{name}.msg" not in shared]
     expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")

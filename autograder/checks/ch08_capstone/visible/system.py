@@ -1,4 +1,4 @@
-"""Steps 4, 6 and 7: does one command start it all, and do the tests and the linters pass?"""
+"""Steps 4, 6 and 7: the launch file, the configuration, the tests and the linters."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ from autograder.checks.ch08_capstone.support.contract import (
 from autograder.checks.ch08_capstone.support.sources import source_of
 
 TESTS, LINTERS = ("test_sectors.py",), ("test_flake8.py", "test_pep257.py")
-MUTANT = ("a mutant",)
-# The sector is left out: the nearest of all readings that are finite.
+ON_MUTANT = ("a mutant",)
+# Ignores the sector: returns the nearest of all finite readings.
 ALL_AROUND = """import math
 
 FRONT, LEFT, RIGHT = 0.0, math.pi / 2, -math.pi / 2
@@ -46,20 +46,24 @@ Reports = Mapping[tuple[str, ...], student_test_reports.Report]
 
 @pytest.fixture(scope="module", autouse=True)
 def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
-    """What the tests and the linters will have said; they run beside the launch, which is mostly waiting."""
+    """The future reports of the tests and the linters, which run while the check of the launch file waits."""
 
-    def run() -> Reports:
-        wanted = {
-            files: student_test_reports.TestRun(files) for files in (TESTS, LINTERS) if not _absent(workspace, files)
+    def run_tests() -> Reports:
+        test_runs = {
+            files: student_test_reports.TestRun(files)
+            for files in (TESTS, LINTERS)
+            if not _missing_files(workspace, files)
         }
-        if TESTS in wanted:
+        if TESTS in test_runs:
             version = versions.Version({f"{PACKAGE}/__init__.py": "", f"{PACKAGE}/{SECTORS}.py": ALL_AROUND}, {})
-            wanted[MUTANT] = student_test_reports.TestRun(TESTS, version, first_failure=True, shown=True)
-        runs = student_test_runs.run(workspace, student_test_runs.take(workspace, PACKAGE), list(wanted.values()))
-        return dict(zip(wanted, runs, strict=True))
+            test_runs[ON_MUTANT] = student_test_reports.TestRun(TESTS, version, exit_first=True, is_public=True)
+        results = student_test_runs.run(
+            workspace, student_test_runs.read_source(workspace, PACKAGE), list(test_runs.values())
+        )
+        return dict(zip(test_runs, results, strict=True))
 
-    with ThreadPoolExecutor(1) as beside:
-        yield beside.submit(run)
+    with ThreadPoolExecutor(1) as executor:
+        yield executor.submit(run_tests)
 
 
 @check(points=1, covers=("launches", "launch-arguments"), group="step_4", needs=("starts",), doc=contract.LAUNCH_DOC)
@@ -80,13 +84,13 @@ def test_launch(workspace: Workspace) -> None:
 @hint("A node's name, then ros__parameters, then name and value, each level indented by two blanks.")
 def test_config_file(workspace: Workspace) -> None:
     """Step 5: the installed configuration holds every parameter of every node, with its default."""
-    file = parameters.read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
-    for node, wanted in PARAMETERS.items():
-        values = parameters.for_node(file, node)
-        absent = [name for name in wanted if name not in values]
+    config = parameters.read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
+    for node, bounds_by_name in PARAMETERS.items():
+        values = parameters.for_node(config, node)
+        absent = [name for name in bounds_by_name if name not in values]
         expect(not absent, f"{CONFIG} has no {', '.join(absent)} for {node}.")
-        wrong = parameters.differences(values, {name: bounds.default for name, bounds in wanted.items()})
-        expect(not wrong, f"{CONFIG}: {'; '.join(wrong)}.")
+        differences = parameters.differences(values, {name: bounds.default for name, bounds in bounds_by_name.items()})
+        expect(not differences, f"{CONFIG}: {'; '.join(differences)}.")
 
 
 @check(points=1, covers="sector-tests", group="step_6", needs=("package",), doc=contract.TESTING_DOC)
@@ -94,7 +98,7 @@ def test_config_file(workspace: Workspace) -> None:
 @hint("Import nothing of the package but robot_navigation_tutorial.sectors.")
 def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""
-    expect(not _absent(workspace, TESTS), f"There is no test/{TESTS[0]}.")
+    expect(not _missing_files(workspace, TESTS), f"There is no test/{TESTS[0]}.")
     text = (source_of(workspace, PACKAGE) / "test" / TESTS[0]).read_text(errors="replace")
     expect(
         STILL_TO_BE_WRITTEN not in text,
@@ -102,8 +106,8 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     )
     report = reports.result()[TESTS]
     messages = report.claims.messages
-    failed = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
-    expect(not report.failed, f"{len(report.failed)} tests fail: {failed}")
+    failures = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
+    expect(not report.failed, f"{len(report.failed)} tests fail: {failures}")
     expect(len(report.executed) >= 4, f"{len(report.executed)} tests ran. {report.output.strip()[-300:]}")
 
 
@@ -111,8 +115,8 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
 @hint("Put something near on the left, and ask for the front.", "Change nearest yourself: which test fails?")
 def test_sector_tests_notice(reports: Future[Reports]) -> None:
     """Step 6: one of them fails on a sectors.py that looks all around instead of into the sector."""
-    said = reports.result()
-    expect(said[MUTANT].detects_fault(said[TESTS]), "All of them pass on that mutant, too.")
+    results = reports.result()
+    expect(results[ON_MUTANT].detects_fault(results[TESTS]), "All of them pass on that mutant, too.")
 
 
 @check(points=1, covers=("linters", "pytest"), group="step_7", needs=("package",), doc=contract.TESTING_DOC)
@@ -120,20 +124,26 @@ def test_sector_tests_notice(reports: Future[Reports]) -> None:
 @hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 7: colcon will run your tests, and flake8 and pep257 report no errors."""
-    named = colcon_test.runs_pytest(workspace, installed.look(workspace.install, PACKAGE))
-    expect(named, "setup.py does not name pytest, so that `colcon test` runs no test.")
-    absent = _absent(workspace, LINTERS)
+    runs_pytest = colcon_test.runs_pytest(workspace, installed.inspect_package(workspace.install, PACKAGE))
+    expect(runs_pytest, "setup.py does not name pytest, so that `colcon test` runs no test.")
+    absent = _missing_files(workspace, LINTERS)
     expect(not absent, f"There is no test/{' and no test/'.join(absent)}.")
     report = reports.result()[LINTERS]
-    shown = "; ".join(report.claims.messages.get(name, name) for name in report.failed)
-    expect(report.passed, f"The linters object: {shown or report.output.strip()[-300:]}")
-    ran = {f"{test.partition('::')[0]}.py" for test in report.executed}
-    expect(ran >= set(LINTERS), f"{' and '.join(sorted({*LINTERS} - ran))}: each test in it was skipped.")
-    hidden = linters.objections(workspace, student_test_runs.take(workspace, PACKAGE))
-    expect(not hidden, "; ".join(f"{name} passes, and its linter finds {what}" for name, what in hidden.items()))
+    messages = "; ".join(report.claims.messages.get(name, name) for name in report.failed)
+    expect(report.passed, f"The linters object: {messages or report.output.strip()[-300:]}")
+    executed_files = {f"{test.partition('::')[0]}.py" for test in report.executed}
+    expect(
+        executed_files >= set(LINTERS),
+        f"{' and '.join(sorted({*LINTERS} - executed_files))}: each test in it was skipped.",
+    )
+    objections = linters.lint(workspace, student_test_runs.read_source(workspace, PACKAGE))
+    expect(
+        not objections,
+        "; ".join(f"{name} passes, and its linter finds {objection}" for name, objection in objections.items()),
+    )
 
 
-def _absent(workspace: Workspace, files: tuple[str, ...]) -> list[str]:
-    """Return the test files that are not there."""
+def _missing_files(workspace: Workspace, files: tuple[str, ...]) -> list[str]:
+    """Return the test files that do not exist."""
     tests = source_of(workspace, PACKAGE) / "test"
     return [name for name in files if not (tests / name).is_file()]

@@ -1,4 +1,4 @@
-"""The hidden suite of 09_assessment: the key to the questions, and a small system from an empty folder."""
+"""The hidden suite of 09_assessment: the key to the questions, and checks of a small system."""
 
 PACKAGES = ("motor_guard_interfaces", "motor_guard")
 FOLDERS = ("assessment",)

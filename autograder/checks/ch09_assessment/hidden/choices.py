@@ -1,4 +1,4 @@
-"""Question 1: each choice is a check of its own, and says why a wrong answer is wrong."""
+"""Question 1: a check for each choice, with an explanation of why a wrong answer is wrong."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ class Choice(CheckRow):
 CHOICES = [
     Choice(
         id=name,
-        title=f"Question 1.{name[1:]}: {asked.title}",
+        title=f"Question 1.{name[1:]}: {question.title}",
         points=1,
-        hints=asked.hints,
-        doc=asked.doc,
-        question=asked,
+        hints=question.hints,
+        doc=question.doc,
+        question=question,
         covers="choices",
     )
-    for name, asked in QUESTIONS.items()
+    for name, question in QUESTIONS.items()
 ]
 
 
 @check_each_row(group("choices"), CHOICES)
 def letter_is_right(choice: Choice, workspace: Workspace) -> None:
-    """Compare the letter that was given with the right one."""
+    """Fail the check unless the given letter is the right one."""
     letter = expect_letter(answers(workspace), choice.id)
     expect(letter == choice.question.right, f"You chose {letter}. {choice.question.wrong.get(letter, '')}")

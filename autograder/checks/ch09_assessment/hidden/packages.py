@@ -1,4 +1,4 @@
-"""Question 3: the messages, and what the two packages declare and install."""
+"""Question 3: the messages, and the declarations and installed files of the two packages."""
 
 from __future__ import annotations
 
@@ -28,9 +28,11 @@ def test_definitions(workspace: Workspace) -> None:
 def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard_interfaces, with both messages."""
     require_built(builds, INTERFACES)
-    shared = installed.look(workspace.install, INTERFACES).shared
-    absent = [path for path in contract.MESSAGES if path not in shared]
-    expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
+    shared = installed.inspect_package(workspace.install, INTERFACES).shared
+    missing_paths = [path for path in contract.MESSAGES if path not in shared]
+    expect(
+        not missing_paths, f"The build made no code for {' and '.join(missing_paths)}: CMakeLists.txt does not list it."
+    )
 
 
 @check(points=1, covers=("interfaces-manifest", "licence", "stamp-package"), doc=contract.INTERFACES_DOC)
@@ -38,13 +40,13 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
 @hint("Two buildtool_depends, a depend, an exec_depend, a member_of_group, and the build type: 03_interfaces has them.")
 def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """motor_guard_interfaces says that it holds messages, what these need and its licence; the ament index knows it."""
-    found = manifest.read(source_of(workspace, INTERFACES))
-    wrong = packaging.wrong_for_interfaces(found, {"builtin_interfaces": "Temperature"})
+    package_manifest = manifest.read(source_of(workspace, INTERFACES))
+    wrong = packaging.wrong_for_interfaces(package_manifest, {"builtin_interfaces": "Temperature"})
     expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=0.5)
-    _expect_licence(found)
+    _expect_licence(package_manifest)
     if builds[INTERFACES] is OK:
-        said = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
-        expect(installed.look(workspace.install, INTERFACES).marker, said, fraction=0.5)
+        message = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
+        expect(installed.inspect_package(workspace.install, INTERFACES).marker, message, fraction=0.5)
 
 
 @check(points=2, covers="packages", after=("messages_are_generated",), doc=contract.PACKAGES_DOC)
@@ -53,8 +55,8 @@ def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis
 def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard, and installs three programs where ros2 finds them."""
     require_built(builds, PACKAGE)
-    found = installed.look(workspace.install, PACKAGE)
-    expect_executables(found.executables, found.misplaced, PROGRAMS)
+    installation = installed.inspect_package(workspace.install, PACKAGE)
+    expect_executables(installation.executables, installation.misplaced, PROGRAMS)
 
 
 @check(
@@ -70,24 +72,26 @@ def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> 
     """package.xml of motor_guard declares all that it needs and its licence; setup.py agrees, and installs it."""
     require_built(builds, PACKAGE)
     source = source_of(workspace, PACKAGE)
-    found, installation = manifest.read(source), installed.look(workspace.install, PACKAGE)
-    missing = imports.missing(source, found)["exec"]
+    package_manifest, installation = manifest.read(source), installed.inspect_package(workspace.install, PACKAGE)
+    missing = imports.missing(source, package_manifest)["exec"]
     expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
-    absent = [name for name in contract.FOR_TESTS if name not in found.needs("test")]
-    expect(not absent, f"package.xml has no test_depend on {', '.join(absent)}.", fraction=0.5)
-    _expect_licence(found)
-    packaging.expect_same_facts(installation, found, fraction=0.5)
+    absent_names = [name for name in contract.TEST_DEPENDENCIES if name not in package_manifest.needs("test")]
+    expect(not absent_names, f"package.xml has no test_depend on {', '.join(absent_names)}.", fraction=0.5)
+    _expect_licence(package_manifest)
+    packaging.expect_same_facts(installation, package_manifest, fraction=0.5)
     packaging.expect_installs_itself(installation)
     packaging.expect_pytest(workspace, installation, fraction=0.5)
-    called = installation.metadata.get("Name", "").replace("-", "_")  # setuptools may write the one for the other
-    expect(called == PACKAGE, f"The name is {called} in setup.py, {PACKAGE} in package.xml.", fraction=0.5)
+    metadata_name = installation.metadata.get("Name", "").replace("-", "_")  # setuptools may write - for _
+    expect(
+        metadata_name == PACKAGE, f"The name is {metadata_name} in setup.py, {PACKAGE} in package.xml.", fraction=0.5
+    )
     modules = {module.rpartition(".")[2] for module in installation.modules}
-    absent = [name for name in PROGRAMS if name not in modules]
-    said = f"No module {', '.join(absent)} is installed: each program is main in the module of its name."
-    expect(not absent, said, fraction=0.5)
+    absent_names = [name for name in PROGRAMS if name not in modules]
+    message = f"No module {', '.join(absent_names)} is installed: each program is main in the module of its name."
+    expect(not absent_names, message, fraction=0.5)
 
 
-def _expect_licence(found: manifest.Manifest) -> None:
-    named = ", ".join(found.licences)
-    said = f"package.xml of {found.name} says the licence {named}: it should be {contract.LICENCE}."
-    expect(named == contract.LICENCE, said, fraction=0.5)
+def _expect_licence(package_manifest: manifest.Manifest) -> None:
+    licences = ", ".join(package_manifest.licences)
+    message = f"package.xml of {package_manifest.name} says the licence {licences}: it should be {contract.LICENCE}."
+    expect(licences == contract.LICENCE, message, fraction=0.5)

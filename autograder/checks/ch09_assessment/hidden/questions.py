@@ -1,4 +1,4 @@
-"""The key to question 1: of each choice the right letter, and why each other one is wrong."""
+"""The key to question 1: the right letter of each choice, and why the other ones are wrong."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ class Question:
     """A single choice of four.
 
     Attributes:
-        objective: the key of the objective that it tests, in the syllabus.
-        title: what it asks about, without giving anything away.
-        right: the letter.
-        wrong: for each other letter why it is wrong, so that the right one is not named.
-        hints: shown one after the other when the answer is wrong.
+        objective: the key, in the syllabus, of the objective that the question tests.
+        title: the question's topic, which must not give the answer away.
+        right: the right letter.
+        wrong: for each other letter, why it is wrong, without naming the right one.
+        hints: shown one after the other if the answer is wrong.
         doc: a page to read.
     """
 

@@ -1,1 +1,1 @@
-"""What the visible and the hidden checks of 09_assessment share."""
+"""Code that the visible and the hidden checks of 09_assessment share."""

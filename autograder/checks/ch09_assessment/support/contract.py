@@ -1,13 +1,12 @@
-"""The contract of the practical question, in numbers, and the names that the checks use."""
+"""Names and numbers in the contract of the practical question, and links that several checks use."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from itertools import accumulate
 from statistics import fmean
 
-SHEET = "assessment/answers.yaml"  # below src
+SHEET = "assessment/answers.yaml"  # the path below src
 QUESTIONS = tuple(f"q{number}" for number in range(1, 13))
 LETTERS = "abcd"
 
@@ -15,16 +14,16 @@ PACKAGE, INTERFACES = "motor_guard", "motor_guard_interfaces"
 THERMOMETER, SMOOTHER, GUARD = PROGRAMS = ("thermometer", "smoother", "guard")
 LAUNCH_FILE = "motor_guard.launch.py"
 LICENCE = "Apache-2.0"
-FOR_TESTS = ("ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest")
+TEST_DEPENDENCIES = ("ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest")
 MESSAGES = {
     "msg/Temperature.msg": "builtin_interfaces/Time stamp\nfloat32 celsius\n",
     "msg/Decision.msg": "builtin_interfaces/Time stamp\nbool cooling\nfloat32 celsius\n",
 }
 
 PERIOD, MEAN, SWING = 0.5, 50.0, 20.0  # s, degrees Celsius, degrees
-READINGS_A_TURN = 20
-WINDOW = 5
-HOT, COOL = 60.0, 50.0  # degrees Celsius
+READINGS_PER_TURN = 20
+WINDOW = 5  # readings in an average
+HOT, COOL = 60.0, 50.0  # degrees Celsius: where the fan starts, and where it stops
 TOLERANCE = 1e-3  # degrees: a temperature is a 32-bit float
 
 _DOCS = "https://docs.ros.org/en/jazzy"
@@ -36,21 +35,32 @@ LAUNCH_DOC = f"{_DOCS}/Tutorials/Intermediate/Launch/Creating-Launch-Files.html"
 
 
 def reading(number: int, mean: float = MEAN, swing: float = SWING) -> float:
-    """Return what the thermometer measures in its reading of this number, from 0, in degrees Celsius."""
-    return mean + swing * math.sin(math.tau * number / READINGS_A_TURN)
+    """Return the thermometer's reading with this number, in degrees Celsius. Numbers start from 0."""
+    return mean + swing * math.sin(math.tau * number / READINGS_PER_TURN)
 
 
-def averages(readings: list[float], window: int = WINDOW) -> list[float]:
-    """Return the average after each of the readings, all of them numbers."""
-    return [fmean(readings[max(0, end - window) : end]) for end in range(1, len(readings) + 1)]
+def windows(readings: Iterable[float], window: int = WINDOW) -> list[list[float]]:
+    """Return the readings that enter each average. A reading that is not finite enters none."""
+    finite = [celsius for celsius in readings if math.isfinite(celsius)]
+    return [finite[max(0, stop - window) : stop] for stop in range(1, len(finite) + 1)]
 
 
-def decisions(temperatures: Iterable[float], hot: float = HOT, cool: float = COOL) -> list[bool]:
-    """Return for each temperature whether the fan runs; it is off before the first."""
+def averages(readings: Iterable[float], window: int = WINDOW) -> list[float]:
+    """Return the average after each finite reading."""
+    return [fmean(newest) for newest in windows(readings, window)]
 
-    def decide(cooling: bool, celsius: float) -> bool:
-        if not math.isfinite(celsius) or celsius >= hot:
-            return True
-        return cooling and celsius > cool
 
-    return list(accumulate(temperatures, decide, initial=False))[1:]
+def decisions(temperatures: Iterable[float], hot: float = HOT, cool: float = COOL) -> list[set[bool]]:
+    """Return the allowed states of the fan after each temperature. The fan is off at first.
+
+    Between the thresholds, both states are allowed after a temperature that is not finite.
+    """
+    allowed_states, states = [], {False}
+    for celsius in temperatures:
+        if not math.isfinite(celsius):
+            allowed_states.append({True})
+            states = {False, True}
+            continue
+        states = {True} if celsius >= hot else {False} if celsius <= cool else states
+        allowed_states.append(states)
+    return allowed_states

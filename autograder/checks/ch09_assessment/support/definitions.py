@@ -1,4 +1,4 @@
-"""The student's message definitions against the contract, by their text."""
+"""Compares the text of the student's message definitions with the contract."""
 
 from __future__ import annotations
 
@@ -11,24 +11,26 @@ from autograder.checks.ch09_assessment.support.robot import source_of
 
 
 def expect_definitions(workspace: Workspace) -> None:
-    """Fail the check unless both messages are as the contract says; part of the points for a part of the fields."""
+    """Fail the check unless both messages follow the contract; right fields earn part of the points."""
     folder = source_of(workspace, INTERFACES)
     sentences, shares = [], []
     for path, text in MESSAGES.items():
-        wanted = interfaces.parse(INTERFACES, path, text)
+        expected = interfaces.parse(INTERFACES, path, text)
         try:
-            found = interfaces.parse(INTERFACES, path, _text(folder, path))
+            actual = interfaces.parse(INTERFACES, path, _definition_text(folder, path))
         except interfaces.Unreadable as error:
             raise CheckFailed(str(error)) from None
-        differences = (*interfaces.compare(wanted, found), *_empty_defaults(path, found))
+        differences = (*interfaces.compare(expected, actual), *_empty_defaults(path, actual))
         sentences += [difference.sentence for difference in differences]
-        shares.append(interfaces.share(wanted, differences))
+        shares.append(interfaces.share(expected, differences))
     expect(not sentences, " ".join(sentences[:3]), fraction=round(0.5 * sum(shares) / len(shares), 2))
 
 
-def _empty_defaults(path: str, found: interfaces.Interface) -> list[interfaces.Difference]:
-    """Return the defaults that change no value, which `compare` lets pass: the contract says "without defaults"."""
-    fields = [field for part in found.parts for field in part.fields if field.default is not None and not field.default]
+def _empty_defaults(path: str, interface: interfaces.Interface) -> list[interfaces.Difference]:
+    """Return defaults that change no value. `compare` accepts them, but the contract does not allow defaults."""
+    fields = [
+        field for part in interface.parts for field in part.fields if field.default is not None and not field.default
+    ]
     return [
         interfaces.Difference(
             interfaces.Aspect.DEFAULTS, f"{path}: {field.name} has the default {field.default!r}, it should be none."
@@ -37,11 +39,11 @@ def _empty_defaults(path: str, found: interfaces.Interface) -> list[interfaces.D
     ]
 
 
-def _text(folder: Path, path: str) -> str:
+def _definition_text(folder: Path, path: str) -> str:
     file = folder / path
     if file.is_symlink() or not file.is_file():
-        there = sorted(str(other.relative_to(folder)) for other in folder.glob("msg/*.msg"))
-        raise CheckFailed(f"{INTERFACES} has no {path}; it has {', '.join(there) or 'no message at all'}.")
+        names = sorted(str(other.relative_to(folder)) for other in folder.glob("msg/*.msg"))
+        raise CheckFailed(f"{INTERFACES} has no {path}; it has {', '.join(names) or 'no message at all'}.")
     text = file.read_bytes()[: interfaces.MAX_BYTES + 1].decode(errors="replace")
     expect(
         "NotImplementedError" not in text,

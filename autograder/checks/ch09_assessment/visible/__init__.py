@@ -1,4 +1,4 @@
-"""The visible checks of 09_assessment: is everything answered, and does what was built start?"""
+"""The visible checks of 09_assessment: all questions are answered, and the system starts."""
 
 PACKAGES = ("motor_guard_interfaces", "motor_guard")
 MODULES = ("sheet", "system")

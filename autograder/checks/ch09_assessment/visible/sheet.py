@@ -1,4 +1,4 @@
-"""Question 1: is there a letter for every question? Which letter is right, no visible check says."""
+"""Question 1: each question has a letter. No visible check reveals whether the letter is right."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from autograder.checks.ch09_assessment.support.sheet import answers, expect_lett
 @hint("A line is `q1: a`: the question, a colon, a space, one letter.", "A guess costs nothing; a gap earns nothing.")
 def test_answered(workspace: Workspace) -> None:
     """Question 1: each question has an answer, one of four letters; whether it is right is not looked at."""
-    given = answers(workspace)
+    answers_by_question = answers(workspace)
     for question in QUESTIONS:
-        expect_letter(given, question)
-    unknown = sorted(set(given) - set(QUESTIONS))
+        expect_letter(answers_by_question, question)
+    unknown = sorted(set(answers_by_question) - set(QUESTIONS))
     expect(not unknown, f"There is no question {', '.join(unknown)[:80]}.")

@@ -1,4 +1,4 @@
-"""Question 3: the messages, the build, each node on a few temperatures, and the launch."""
+"""Question 3: the messages, the build, each node with a few temperatures, and the launch."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Question 3: colcon builds both packages, installs three programs and the launch file; imports are declared."""
     require_built(builds, INTERFACES)
     require_built(builds, PACKAGE)
-    found = installed.look(workspace.install, PACKAGE)
-    expect_executables(found.executables, found.misplaced, PROGRAMS)
-    expect(f"launch/{contract.LAUNCH_FILE}" in found.shared, f"launch/{contract.LAUNCH_FILE} is not installed.")
+    installation = installed.inspect_package(workspace.install, PACKAGE)
+    expect_executables(installation.executables, installation.misplaced, PROGRAMS)
+    expect(f"launch/{contract.LAUNCH_FILE}" in installation.shared, f"launch/{contract.LAUNCH_FILE} is not installed.")
     source = source_of(workspace, PACKAGE)
     missing = imports.missing(source, manifest.read(source))["exec"]
     expect(not missing, f"{imports.describe(missing)}: package.xml does not declare it.")
@@ -59,15 +59,16 @@ def test_smooths(start: Start) -> None:
     """Question 3: smoother publishes the mean of the newest finite readings, by its window, and the newest stamp."""
     with start(SMOOTHER) as harness:
         harness.expect_in_graph()
-        told = harness.send([40.0, 50.0, math.nan, 60.0])
-    seen = [round(message.celsius, 1) for message in told]
-    expect(seen == [40.0, 45.0, 50.0], f"40, 50, nan, 60 °C became {seen}, and should become [40.0, 45.0, 50.0].")
-    stamps = [message.stamp.sec for message in told]
+        averages = harness.send([40.0, 50.0, math.nan, 60.0])
+    actual = [round(message.celsius, 1) for message in averages]
+    expect(actual == [40.0, 45.0, 50.0], f"40, 50, nan, 60 °C became {actual}, and should become [40.0, 45.0, 50.0].")
+    stamps = [message.stamp.sec for message in averages]
     expect(stamps == [1, 2, 4], f"Their stamps were {stamps} s, and those of the newest readings are [1, 2, 4] s.")
     with start(SMOOTHER, window=2) as harness:
-        seen = [round(message.celsius, 1) for message in harness.send([40.0, 50.0, 70.0])]
+        actual = [round(message.celsius, 1) for message in harness.send([40.0, 50.0, 70.0])]
     expect(
-        seen == [40.0, 45.0, 60.0], f"With window 2, 40, 50, 70 °C became {seen}, and should become [40.0, 45.0, 60.0]."
+        actual == [40.0, 45.0, 60.0],
+        f"With window 2, 40, 50, 70 °C became {actual}, and should become [40.0, 45.0, 60.0].",
     )
 
 
@@ -81,12 +82,12 @@ def test_decides(start: Start) -> None:
     """Question 3: guard switches the fan on when it is hot or not known, off when it is cool, and passes both on."""
     with start(GUARD) as harness:
         harness.expect_in_graph()
-        told = harness.send([45.0, 65.0, 55.0, 45.0, math.nan])
-    seen = [message.cooling for message in told]
-    wanted = [False, True, True, False, True]
-    expect(seen == wanted, f"At 45, 65, 55, 45, nan °C, cooling was {seen}, not {wanted}.")
-    given = [(message.stamp.sec, round(message.celsius, 1)) for message in told[:3]]
-    expect(given == [(1, 45.0), (2, 65.0), (3, 55.0)], f"Stamps and temperatures of the decisions were {given}.")
+        decisions = harness.send([45.0, 65.0, 55.0, 45.0, math.nan])
+    actual = [message.cooling for message in decisions]
+    expected = [False, True, True, False, True]
+    expect(actual == expected, f"At 45, 65, 55, 45, nan °C, cooling was {actual}, not {expected}.")
+    inputs = [(message.stamp.sec, round(message.celsius, 1)) for message in decisions[:3]]
+    expect(inputs == [(1, 45.0), (2, 65.0), (3, 55.0)], f"Stamps and temperatures of the decisions were {inputs}.")
 
 
 @check(

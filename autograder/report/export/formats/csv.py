@@ -18,7 +18,7 @@ _SEPARATOR = re.compile(r"([;|\t])")
 def write(results: Sequence[Result], out: Path, extra_cells: Mapping[str, Mapping[str, str | float]] = {}) -> Path:
     """Write a row for each result, with a column for each check and the points that it earned.
 
-    `extra_cells` contains additional cells of students by heading. The file is UTF-8 with commas, and every cell is
+    `extra_cells` contains additional cells by student and heading. The file is UTF-8 with commas, and every cell is
     quoted as in RFC 4180. A submission that was not graded has no score.
     """
     rows = [{**_row(result), **extra_cells.get(result.student, {})} for result in results]

@@ -1,16 +1,16 @@
-"""A stand-in for `ament_copyright`, which has no wheel: does each source file say whose it is, and its licence?
+"""A stand-in for `ament_copyright`, which has no wheel: it checks that each source file has a copyright and a licence.
 
-It is found only where the real package is not importable. Covered: `main(argv)` with paths, `--exclude`,
-`--verbose`, `--list-licenses` and `--xunit-file`. Get the real one by sourcing a ROS 2 Jazzy installation.
+It is imported only if the real package is not installed. It covers `main(argv)` with paths, `--exclude`,
+`--verbose`, `--list-licenses` and `--xunit-file`. For the real package, source an installation of ROS 2 Jazzy.
 """
 
-from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_notice import make_getattr
+from standin_submodules import install_submodule_finder
 
 from .main import main
 
 __all__ = ["main"]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)
 
-offer_submodules()
+install_submodule_finder()

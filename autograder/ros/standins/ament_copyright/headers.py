@@ -1,4 +1,4 @@
-"""Whose a file is and under which licence, read from the comment at its top."""
+"""The copyright notices and the licence of a file, read from the comment at its top."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pathlib import Path
 
 UNKNOWN = "<unknown>"
 
-# A phrase that only this licence's header or text has; the more particular ones come first. Jazzy's identifiers.
+# Phrases of each licence, by Jazzy's identifiers. The more specific licences come first.
 _PHRASES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("Apache-2.0", ("licensed under the apache license, version 2.0", "apache license version 2.0, january 2004")),
     ("BSL-1.0", ("boost software license, version 1.0", "boost software license - version 1.0")),
-    # The GPL's text ends with a word on the LGPL, so the name alone will not do.
+    # The name of the LGPL alone is not enough, because the text of the GPL mentions it.
     (
         "LGPL-3.0-only",
         ("gnu lesser general public license version 3", "terms of the gnu lesser general public license"),
@@ -27,7 +27,7 @@ _PHRASES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("MIT", ("permission is hereby granted, free of charge", "the above copyright notice and this permission notice")),
     ("MIT-0", ("permission is hereby granted, free of charge",)),
 )
-# For these every phrase has to be there; for the others one is enough.
+# These licences require all their phrases; the others require one.
 _ALL_PHRASES = {"BSD-3-Clause", "MIT"}
 
 IDENTIFIERS = tuple(name for name, _ in _PHRASES)
@@ -38,11 +38,11 @@ _SPDX = re.compile(r"SPDX-License-Identifier:\s*(\S+)", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class Header:
-    """What a file's first comment says.
+    """The content of a file's first comment.
 
     Attributes:
-        copyrights: each notice, as `2026 Ada Lovelace`.
-        licence: the licence's identifier, or `<unknown>`.
+        copyrights: the copyright notices, such as `2026 Ada Lovelace`.
+        licence: the identifier of the licence, or `<unknown>`.
     """
 
     copyrights: tuple[str, ...]
@@ -55,16 +55,18 @@ def read_header(path: Path) -> Header:
     Raises:
         OSError, UnicodeDecodeError: the file cannot be read as UTF-8 text.
     """
-    return parse_header(path.read_text(encoding="utf-8").splitlines(), comment="#" if _hash(path) else "//")
+    return parse_header(
+        path.read_text(encoding="utf-8").splitlines(), comment="#" if _has_hash_comments(path) else "//"
+    )
 
 
 def parse_header(lines: Iterable[str], *, comment: str) -> Header:
     """Find copyright notices and the licence in the first block of comments of a file's lines."""
     block: list[str] = []
     in_block_comment = False
-    for number, line in enumerate(lines):
+    for index, line in enumerate(lines):
         text = line.strip()
-        if number < 2 and (text.startswith("#!") or re.match(r"#.*coding[:=]", text)):
+        if index < 2 and (text.startswith("#!") or re.match(r"#.*coding[:=]", text)):
             continue
         if not text and not block:
             continue
@@ -83,10 +85,10 @@ def _licence(text: str) -> str:
     spdx = _SPDX.search(text)
     if spdx and spdx[1] in IDENTIFIERS:
         return spdx[1]
-    plain = re.sub(r"\s+", " ", text).lower()
+    normalized = re.sub(r"\s+", " ", text).lower()
     for name, phrases in _PHRASES:
-        found = [phrase in plain for phrase in phrases]
-        if all(found) if name in _ALL_PHRASES else any(found):
+        matches = [phrase in normalized for phrase in phrases]
+        if all(matches) if name in _ALL_PHRASES else any(matches):
             return name
     return UNKNOWN
 
@@ -96,5 +98,5 @@ def licence_of_text(text: str) -> str:
     return _licence(text)
 
 
-def _hash(path: Path) -> bool:
+def _has_hash_comments(path: Path) -> bool:
     return path.suffix in {".py", ".cmake"} or path.name == "CMakeLists.txt"

@@ -1,4 +1,4 @@
-"""The check itself: find the files, judge each, print what is wrong, optionally write an xunit file."""
+"""The check: find the files, check each, print the errors, and optionally write an xunit file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .headers import IDENTIFIERS, UNKNOWN, licence_of_text, read_header
 
@@ -18,75 +18,75 @@ EXTENSIONS = ("c", "cc", "cpp", "cxx", "h", "hh", "hpp", "hxx", "cmake", "py")
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """What the check found out about one file."""
+class FileResult:
+    """The result of checking one file."""
 
     path: Path
-    fine: bool
+    passed: bool
     message: str
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Check the files under the given paths; return 0 when every one is in order and 1 otherwise."""
-    started = time.monotonic()
+    """Check the files under the given paths; return 0 if all of them pass, otherwise 1."""
+    start = time.monotonic()
     args = _parser().parse_args(argv)
     if args.list_licenses:
         print(*sorted(IDENTIFIERS), sep="\n")
         return 0
-    verdicts = [judge(path) for path in sorted(find_files([Path(p) for p in args.paths], args.exclude))]
-    if not verdicts:
+    results = [check_file(path) for path in sorted(find_files([Path(p) for p in args.paths], args.exclude))]
+    if not results:
         print("No repository roots and files found")
-    for verdict in verdicts:
-        if args.verbose or not verdict.fine:
-            print(f"{verdict.path}: {verdict.message}", file=sys.stdout if verdict.fine else sys.stderr)
-    errors = sum(not verdict.fine for verdict in verdicts)
+    for result in results:
+        if args.verbose or not result.passed:
+            print(f"{result.path}: {result.message}", file=sys.stdout if result.passed else sys.stderr)
+    errors = sum(not result.passed for result in results)
     if errors:
-        print(f"{errors} errors, checked {len(verdicts)} files", file=sys.stderr)
+        print(f"{errors} errors, checked {len(results)} files", file=sys.stderr)
     else:
-        print(f"No problems found, checked {len(verdicts)} files")
+        print(f"No problems found, checked {len(results)} files")
     if args.xunit_file:
-        _write_xunit(Path(args.xunit_file), verdicts, time.monotonic() - started)
+        _write_xunit(Path(args.xunit_file), results, time.monotonic() - start)
     return 1 if errors else 0
 
 
 def find_files(paths: Sequence[Path], excluded: Sequence[str] = ()) -> Iterator[Path]:
     """Yield the source files under the paths, and LICENSE beside each package.xml.
 
-    Folders whose names start with `.` or `_` are left out, and `setup.py` beside a `package.xml`.
+    Folders whose names start with `.` or `_` are skipped, as is `setup.py` beside a `package.xml`.
     """
     for path in paths:
         if path.is_file():
             candidates = [path]
         else:
             candidates = [
-                found
-                for found in path.rglob("*")
-                if found.is_file() and not any(p.startswith((".", "_")) for p in found.relative_to(path).parts[:-1])
+                file
+                for file in path.rglob("*")
+                if file.is_file() and not any(part.startswith((".", "_")) for part in file.relative_to(path).parts[:-1])
             ]
-        for found in candidates:
-            beside_package = (found.parent / "package.xml").is_file()
-            if found.name in excluded or (found.name == "setup.py" and beside_package):
+        for file in candidates:
+            beside_package = (file.parent / "package.xml").is_file()
+            if file.name in excluded or (file.name == "setup.py" and beside_package):
                 continue
-            if found.suffix.lstrip(".") in EXTENSIONS or (found.name == "LICENSE" and beside_package):
-                yield found
+            if file.suffix.lstrip(".") in EXTENSIONS or (file.name == "LICENSE" and beside_package):
+                yield file
 
 
-def judge(path: Path) -> Verdict:
-    """Say whether a file carries a copyright notice and a known licence; an empty source file needs none."""
+def check_file(path: Path) -> FileResult:
+    """Check that a file has a copyright notice and a known licence; an empty source file needs neither."""
     try:
         text = path.read_text(encoding="utf-8")
         header = read_header(path)
     except (OSError, UnicodeDecodeError) as error:
-        return Verdict(path, False, f"cannot be read as text: {error}")
+        return FileResult(path, False, f"cannot be read as text: {error}")
     if path.name == "LICENSE":
         licence = licence_of_text(text)
-        return Verdict(path, licence != UNKNOWN, licence if text else "file empty")
+        return FileResult(path, licence != UNKNOWN, licence if text else "file empty")
     if not text:
-        return Verdict(path, True, "file empty")
+        return FileResult(path, True, "file empty")
     if not header.copyrights:
-        return Verdict(path, False, "could not find copyright notice")
+        return FileResult(path, False, "could not find copyright notice")
     message = f"copyright={', '.join(header.copyrights)}, license={header.licence}"
-    return Verdict(path, header.licence != UNKNOWN, message)
+    return FileResult(path, header.licence != UNKNOWN, message)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -103,22 +103,22 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _write_xunit(path: Path, verdicts: Sequence[Verdict], elapsed: float) -> None:
+def _write_xunit(path: Path, results: Sequence[FileResult], elapsed: float) -> None:
     name = f"{path.parent.name}.{path.name.removesuffix('.xml').removesuffix('.xunit')}"
     suite = ET.Element(
         "testsuite",
         name=name,
-        tests=str(len(verdicts)),
+        tests=str(len(results)),
         errors="0",
-        failures=str(sum(not verdict.fine for verdict in verdicts)),
+        failures=str(sum(not result.passed for result in results)),
         time=f"{elapsed:.3f}",
     )
-    for verdict in verdicts:
-        case = ET.SubElement(suite, "testcase", name=str(verdict.path), classname=name)
-        if not verdict.fine:
-            ET.SubElement(case, "failure", message=verdict.message)
+    for result in results:
+        case = ET.SubElement(suite, "testcase", name=str(result.path), classname=name)
+        if not result.passed:
+            ET.SubElement(case, "failure", message=result.message)
     path.parent.mkdir(parents=True, exist_ok=True)
     ET.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -1,4 +1,4 @@
-"""The pytest plugin: makes the marker of copyright tests known."""
+"""The pytest plugin, which registers the marker of copyright tests."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ import pytest
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the marker known."""
+    """Register the marker."""
     config.addinivalue_line("markers", "copyright: marks tests checking for correct copyright")

@@ -1,16 +1,16 @@
 """Stand-in for `launch`, which cannot be installed by pip: the part of it that this course's launch files use.
 
-It is imported only where the real package is not. Names, signatures, semantics and errors are those of
-`launch` in ROS 2 Jazzy (https://docs.ros.org/en/jazzy/p/launch/); the code is the course's own. Covered are
+It is imported only if the real package is not installed. Names, signatures, semantics and errors are those of
+`launch` in ROS 2 Jazzy (https://docs.ros.org/en/jazzy/p/launch/); the code was written for the course. It covers
 launch files in Python, XML and YAML: descriptions, arguments, substitutions, conditions, groups, includes,
-processes, events and timers. What is not covered raises an error that names it. For the real package run
+processes, events and timers. Any other name raises an error. For the real package run
 `make real-launch`, or source an installation of ROS 2 Jazzy.
 """
 
 from __future__ import annotations
 
-from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_notice import make_getattr
+from standin_submodules import install_submodule_finder
 
 from . import (
     _frontend_actions,
@@ -72,6 +72,6 @@ __all__ = [
     "utilities",
 ]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)
 
-offer_submodules()
+install_submodule_finder()

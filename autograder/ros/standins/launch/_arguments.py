@@ -1,6 +1,6 @@
-"""How a launch description finds the arguments that it and the descriptions it includes declare.
+"""The search for the arguments that a launch description, and the descriptions that it includes, declare.
 
-The actions in question derive from the bases here, so that a description need not import the actions.
+The actions derive from the base classes here, so that the search does not import the actions.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ class ArgumentDeclaration(Action):
 
 
 class ArgumentScope(Action):
-    """An action after which arguments from outside are not seen; `ResetLaunchConfigurations` is one."""
+    """An action that hides the arguments from outside; `ResetLaunchConfigurations` is one."""
 
 
 class Inclusion(Action):
     """An action that includes another description; `launch.actions.IncludeLaunchDescription` is one."""
 
     def _plain_argument_names(self) -> list[str]:
-        """Return the names of those arguments that are given and need no context."""
+        """Return the names of the given arguments that are plain text."""
         raise NotImplementedError
 
 
@@ -44,22 +44,22 @@ def find_arguments(entities: Iterable[LaunchDescriptionEntity], conditional: boo
     Of arguments with the same name, the first counts.
 
     Args:
-        entities: where the search begins; it goes on in what these yield.
-        conditional: whether it is uncertain that the entities themselves are visited.
+        entities: the entities where the search starts; it continues in their sub-entities.
+        conditional: whether a condition decides if the entities are visited.
     """
-    found: dict[str, FoundArgument] = {}
+    arguments_by_name: dict[str, FoundArgument] = {}
 
     def search(entities: Iterable[LaunchDescriptionEntity], conditional: bool, inclusions: list[Inclusion]) -> None:
         for entity in entities:
             if isinstance(entity, ArgumentScope):
                 return
-            if isinstance(entity, ArgumentDeclaration) and entity.name not in found:
+            if isinstance(entity, ArgumentDeclaration) and entity.name not in arguments_by_name:
                 entity._conditionally_included = conditional or entity.condition is not None
-                found[entity.name] = (entity, inclusions)
-            inner = [*inclusions, entity] if isinstance(entity, Inclusion) else inclusions
-            search(entity.describe_sub_entities(), conditional, inner)
-            for _, possible in entity.describe_conditional_sub_entities():
-                search(possible, True, inner)
+                arguments_by_name[entity.name] = (entity, inclusions)
+            sub_inclusions = [*inclusions, entity] if isinstance(entity, Inclusion) else inclusions
+            search(entity.describe_sub_entities(), conditional, sub_inclusions)
+            for _, sub_entities in entity.describe_conditional_sub_entities():
+                search(sub_entities, True, sub_inclusions)
 
     search(entities, conditional, [])
-    return list(found.values())
+    return list(arguments_by_name.values())

@@ -1,4 +1,4 @@
-"""What the substitutions of `launch` are called in text, and which arguments they take there."""
+"""The names and arguments of `launch`'s substitutions in text."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def name_substitution(name: str, cls: type[Substitution], *keywords: str) -> Non
     Args:
         name: the name.
         cls: the class.
-        keywords: the keyword of each argument, in their order; one with ``?`` at its end may be left out.
+        keywords: the keyword of each argument, in order; one with ``?`` at its end is optional.
     """
-    least = sum(not keyword.endswith("?") for keyword in keywords)
-    count = str(least) if least == len(keywords) else f"{least} or {len(keywords)}"
+    min_arguments = sum(not keyword.endswith("?") for keyword in keywords)
+    count = str(min_arguments) if min_arguments == len(keywords) else f"{min_arguments} or {len(keywords)}"
 
     def parse(arguments: Arguments) -> tuple[type[Substitution], dict[str, Any]]:
-        if not least <= len(arguments) <= len(keywords):
+        if not min_arguments <= len(arguments) <= len(keywords):
             raise TypeError(f"{name} substitution expects {count} argument{'s' * (len(keywords) != 1)}")
         return cls, {keyword.removesuffix("?"): value for keyword, value in zip(keywords, arguments, strict=False)}
 
@@ -70,23 +70,23 @@ name_substitution("var", LaunchConfiguration, "variable_name", "default?")
 
 @expose_substitution("eval")
 def _eval(arguments: Arguments) -> tuple[type[Substitution], dict[str, Any]]:
-    """Parse an expression and the names of modules, with commas between them, which are plain text."""
+    """Parse an expression and the names of modules, which are plain text and separated by commas."""
     if len(arguments) not in (1, 2):
         raise TypeError("eval substitution expects 1 or 2 arguments")
-    given: dict[str, Any] = {"expression": arguments[0]}
+    keywords: dict[str, Any] = {"expression": arguments[0]}
     if len(arguments) == 2:
         names = "".join(part.text for part in arguments[1] if isinstance(part, TextSubstitution))
-        given["python_modules"] = [name.strip() for name in names.split(",") if name.strip()]
-    return PythonExpression, given
+        keywords["python_modules"] = [name.strip() for name in names.split(",") if name.strip()]
+    return PythonExpression, keywords
 
 
 @expose_substitution("any")
 def _any(arguments: Arguments) -> tuple[type[Substitution], dict[str, Any]]:
-    """Do what Jazzy does, where ``$(any ...)`` raises TypeError: AnySubstitution knows no keyword ``args``."""
+    """Raise TypeError for ``$(any ...)``, as in Jazzy, because AnySubstitution has no keyword ``args``."""
     return AnySubstitution, {"args": arguments}
 
 
 @expose_substitution("all")
 def _all(arguments: Arguments) -> tuple[type[Substitution], dict[str, Any]]:
-    """Do what Jazzy does, where ``$(all ...)`` raises TypeError: AllSubstitution knows no keyword ``args``."""
+    """Raise TypeError for ``$(all ...)``, as in Jazzy, because AllSubstitution has no keyword ``args``."""
     return AllSubstitution, {"args": arguments}

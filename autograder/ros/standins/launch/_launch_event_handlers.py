@@ -1,6 +1,6 @@
-"""The event handlers that name no action of their own: an action completes, the launch ends or includes a description.
+"""The event handlers that do not depend on a class of actions: completion, the end of the launch, and inclusion.
 
-Actions use them, so they stand below the actions; `launch.event_handlers` adds those of processes, which stand above.
+Actions import this module, and it imports no actions. `launch.event_handlers` adds the handlers of processes, which do.
 """
 
 from __future__ import annotations
@@ -43,26 +43,26 @@ class OnShutdown(BaseEventHandler):
 
     @property
     def matcher_description(self) -> str:
-        """Which events it handles, in words."""
+        """A description of the events that it handles."""
         return "event is Shutdown"
 
     @property
     def handler_description(self) -> str:
-        """What the handler does, in words."""
+        """A description of what the handler does."""
         return f"{self._callback}" if self._callback else "<actions>"
 
     def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """Return a description, and the entities that are known beforehand."""
+        """Return a description, and the entities that are known in advance."""
         return super().describe()[0], list(self._entities)
 
     def handle(self, event: Event, context: LaunchContext) -> OptionalEntities:
-        """Return the entities, or what the callable returns."""
+        """Return the entities, or the return value of the callable."""
         super().handle(event, context)
         return self._callback(event, context) if self._callback else self._entities
 
 
 class OnIncludeLaunchDescription(BaseEventHandler):
-    """Execute the launch description that an event brings."""
+    """Execute the launch description of an event."""
 
     def __init__(self) -> None:
         super().__init__(matcher=lambda event: isinstance(event, IncludeLaunchDescription))

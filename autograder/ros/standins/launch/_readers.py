@@ -1,4 +1,4 @@
-"""The functions that read an action's arguments from an XML or YAML launch file: one for each class of actions."""
+"""The functions that read an action's arguments from an XML or YAML launch file, one for each class of actions."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ if TYPE_CHECKING:
 
 Reader = Callable[["Entity", "Parser"], dict[str, Any]]
 
-# The class of actions: the function that returns its keyword arguments, the condition aside.
+# For each class of actions, the function that returns its keyword arguments, except the condition.
 READERS: dict[type, Reader] = {}
 
 
-def reads(action: type) -> Callable[[Reader], Reader]:
+def reader_of(action: type) -> Callable[[Reader], Reader]:
     """Return the decorator that makes a function the reader of a class of actions."""
 
     def register(reader: Reader) -> Reader:

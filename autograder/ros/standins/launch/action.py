@@ -1,4 +1,4 @@
-"""The base of all actions."""
+"""The base class of all actions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Action(LaunchDescriptionEntity):
-    """Something to do, on condition; when it is done, an ExecutionComplete event tells so."""
+    """An action with an optional condition; an ExecutionComplete event is emitted when it is done."""
 
     def __init__(self, *, condition: Condition | None = None) -> None:
         if condition is not None and not isinstance(condition, Condition):
@@ -29,9 +29,9 @@ class Action(LaunchDescriptionEntity):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and the keyword arguments that an element of an XML or YAML launch file gives it."""
-        nearest = next(READERS[base] for base in cls.__mro__ if base in READERS)
-        return cls, {**nearest(entity, parser), **READERS[Action](entity, parser)}
+        """Return the class and its keyword arguments, read from an element of an XML or YAML launch file."""
+        read = next(READERS[base] for base in cls.__mro__ if base in READERS)
+        return cls, {**read(entity, parser), **READERS[Action](entity, parser)}
 
     @property
     def condition(self) -> Condition | None:
@@ -43,15 +43,15 @@ class Action(LaunchDescriptionEntity):
         return f"{type(self).__name__}('{hex(id(self))}')"
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the entities that this action yields."""
+        """Return the entities that executing this action may return."""
         return []
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the sub-entities, unless a condition makes them uncertain."""
+        """Return the sub-entities of an action without a condition."""
         return self.get_sub_entities() if self.__condition is None else []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the sub-entities that a condition makes uncertain."""
+        """Return the sub-entities of an action with a condition."""
         if self.__condition is None:
             return []
         return [(f"Conditionally included by {self.describe()}", self.get_sub_entities())]
@@ -76,19 +76,19 @@ class Action(LaunchDescriptionEntity):
             future.add_done_callback(lambda _: context.emit_event_sync(event))
 
     def execute(self, context: LaunchContext) -> OptionalEntities:
-        """Do it; return entities to visit next."""
+        """Execute the action; return entities to visit next."""
         return None
 
 
 def as_list(entities: OptionalEntities) -> list[LaunchDescriptionEntity] | None:
-    """Return one entity, several or none of them as a list or None."""
+    """Return one or several entities as a list, or None for None."""
     if entities is None:
         return None
     return [entities] if isinstance(entities, LaunchDescriptionEntity) else list(entities)
 
 
-def the_loop(context: LaunchContext) -> asyncio.AbstractEventLoop:
-    """Return the loop of the running launch; RuntimeError if none runs."""
+def running_loop(context: LaunchContext) -> asyncio.AbstractEventLoop:
+    """Return the event loop of the running launch; raise RuntimeError if the launch is not running."""
     if context.asyncio_loop is None:
         raise RuntimeError("the launch context has no event loop: it is used outside of a running LaunchService")
     return context.asyncio_loop

@@ -1,4 +1,4 @@
-"""The base of conditions, which decide whether an action is executed."""
+"""The base class of conditions, which decide whether an action is executed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Condition:
         self._predicate = predicate
 
     def describe(self) -> str:
-        """Return a description, that of `repr`."""
+        """Return a description."""
         return repr(self)
 
     def evaluate(self, context: LaunchContext) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .condition import Condition
 from .exceptions import InvalidConditionExpressionError
@@ -31,7 +31,7 @@ _FALSE = ("false", "0")
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Iterable[Substitution]) -> bool:
-    """Return whether `expression` comes out as true or 1 (True), or as false or 0 (False).
+    """Return whether the text of `expression` is true or 1 (True), or false or 0 (False).
 
     Raises InvalidConditionExpressionError for any other text.
     """
@@ -45,7 +45,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: Iterable[S
 
 
 class IfCondition(Condition):
-    """True when the expression is true or 1, false when it is false or 0."""
+    """True if the expression is true or 1, False if it is false or 0."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         self._expression = normalize_to_list_of_substitutions(predicate_expression)
@@ -60,34 +60,36 @@ class UnlessCondition(Condition):
         super().__init__(predicate=lambda context: not evaluate_condition_expression(context, self._expression))
 
 
-def _equals(context: LaunchContext, name: str, expected: list[Substitution] | None) -> bool:
+def _configuration_equals(context: LaunchContext, name: str, expected: list[Substitution] | None) -> bool:
     value = context.launch_configurations.get(name)
     if expected is None or value is None:
         return expected is None and value is None
     return bool(value == perform_substitutions(context, expected))
 
 
-def _warn(condition: Condition) -> None:
+def _warn_of_deprecation(condition: Condition) -> None:
     text = f"{type(condition).__name__} is deprecated: use IfCondition with EqualsSubstitution or NotEqualsSubstitution"
     warnings.warn(text, UserWarning, stacklevel=3)
 
 
 class LaunchConfigurationEquals(Condition):
-    """True when a launch configuration has the given text, or when it is not set and None is expected."""
+    """True if a launch configuration has the given text, or is not set and None is expected."""
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
-        _warn(self)
+        _warn_of_deprecation(self)
         expected = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
-        super().__init__(predicate=lambda context: _equals(context, launch_configuration_name, expected))
+        super().__init__(predicate=lambda context: _configuration_equals(context, launch_configuration_name, expected))
 
 
 class LaunchConfigurationNotEquals(Condition):
     """The opposite of LaunchConfigurationEquals."""
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
-        _warn(self)
+        _warn_of_deprecation(self)
         expected = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
-        super().__init__(predicate=lambda context: not _equals(context, launch_configuration_name, expected))
+        super().__init__(
+            predicate=lambda context: not _configuration_equals(context, launch_configuration_name, expected)
+        )
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

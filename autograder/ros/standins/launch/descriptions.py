@@ -1,4 +1,4 @@
-"""What is to be run: a command with its name, folder and environment, known when it is started."""
+"""Descriptions of processes: a command with its name, folder and environment, expanded when it is started."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .launch_context import LaunchContext
 from .substitution import (
@@ -38,7 +38,7 @@ def _pairs(environment: Environment | None) -> _Pairs | None:
 
 
 class Executable:
-    """An executable with its arguments; `prepare` fills the `final_…` values in."""
+    """An executable with its arguments; `prepare` sets the `final_…` attributes."""
 
     def __init__(
         self,
@@ -55,7 +55,7 @@ class Executable:
             raise TypeError(f"cmd must be a list such as ['echo', 'hello'], got {type(cmd).__name__}: {cmd!r}")
         self.arguments = list(arguments or ())
         self.cmd = [normalize_to_list_of_substitutions(part) for part in [*cmd, *self.arguments]]
-        # Those who give no prefix of their own get the configured one, if its filter lets it through.
+        # Without a prefix of its own, it gets the configured one if the filter matches.
         self.prefix_is_configured = prefix is None
         self.prefix = normalize_to_list_of_substitutions(
             LaunchConfiguration("launch-prefix", default="") if prefix is None else prefix
@@ -70,10 +70,10 @@ class Executable:
         self.final_env: dict[str, str] = {}
 
     def prepare(self, context: LaunchContext, action: Action) -> None:
-        """Perform all substitutions, and give the process the next number."""
+        """Perform all substitutions, and number the process."""
         cmd = [perform_substitutions(context, part) for part in self.cmd]
         executable = PurePath(cmd[0]).name
-        if self._takes_prefix(context, executable):
+        if self._has_prefix(context, executable):
             cmd = shlex.split(perform_substitutions(context, self.prefix)) + cmd
         self.final_cmd = cmd
         name = PurePath(cmd[0]).name if self.name is None else perform_substitutions(context, self.name)
@@ -81,7 +81,7 @@ class Executable:
         self.final_cwd = None if self.cwd is None else perform_substitutions(context, self.cwd)
         self.final_env = self._environment(context)
 
-    def _takes_prefix(self, context: LaunchContext, executable: str) -> bool:
+    def _has_prefix(self, context: LaunchContext, executable: str) -> bool:
         if not self.prefix_is_configured:
             return True
         pattern = LaunchConfiguration("launch-prefix-filter", default="").perform(context)
@@ -94,4 +94,4 @@ class Executable:
         return environment
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

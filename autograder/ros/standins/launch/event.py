@@ -1,9 +1,9 @@
-"""The base of all events."""
+"""The base class of all events."""
 
 from __future__ import annotations
 
 
 class Event:
-    """Something that happened; event handlers decide what follows."""
+    """Something that happened, to which event handlers react."""
 
     name = "launch.Event"

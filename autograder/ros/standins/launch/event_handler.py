@@ -1,4 +1,4 @@
-"""Event handlers: which events they match, and which entities they yield."""
+"""Event handlers, which match events and return entities to execute."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ActionMatcher = Callable[[Action], bool]
 
 
 class BaseEventHandler:
-    """What all event handlers share: a matcher, and the wish to be called once or always."""
+    """The base of all event handlers: a matcher, and whether to handle only one event."""
 
     def __init__(self, *, matcher: Callable[[Event], bool], handle_once: bool = False) -> None:
         self._matcher = matcher
@@ -22,16 +22,16 @@ class BaseEventHandler:
 
     @property
     def handler_description(self) -> str | None:
-        """What the handler does, in words."""
+        """A description of what the handler does."""
         return None
 
     @property
     def matcher_description(self) -> str | None:
-        """Which events it handles, in words."""
+        """A description of the events that it handles."""
         return None
 
     def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """Return a description, and the entities that are known beforehand."""
+        """Return a description, and the entities that are known in advance."""
         return (
             f"{type(self).__name__}(matcher='{self.matcher_description}', "
             f"handler='{self.handler_description}', handle_once={self.handle_once})",
@@ -39,11 +39,11 @@ class BaseEventHandler:
         )
 
     def matches(self, event: Event) -> bool:
-        """Whether `event` is for this handler."""
+        """Return whether this handler matches `event`."""
         return self._matcher(event)
 
     def handle(self, event: Event, context: LaunchContext) -> OptionalEntities:
-        """Handle `event`, which entities find as ``context.locals.event``."""
+        """Handle `event`, which entities can read as ``context.locals.event``."""
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)
@@ -51,7 +51,7 @@ class BaseEventHandler:
 
 
 class EventHandler(BaseEventHandler):
-    """A handler that yields the same entities at each event."""
+    """A handler that returns the same entities for each event."""
 
     def __init__(
         self,
@@ -72,8 +72,7 @@ class EventHandler(BaseEventHandler):
 class OnActionEventBase(BaseEventHandler):
     """A handler of events that come from an action: one action, those that a callable accepts, or all.
 
-    What to do is given as entities, or as a callable that gets the event and the context and may return
-    entities.
+    `on_event` is the entities to execute, or a callable that gets the event and the context and may return entities.
     """
 
     def __init__(
@@ -107,20 +106,20 @@ class OnActionEventBase(BaseEventHandler):
 
     @property
     def handler_description(self) -> str:
-        """What the handler does, in words."""
+        """A description of what the handler does."""
         return f"{self._callback}" if self._callback else "<actions>"
 
     @property
     def matcher_description(self) -> str:
-        """Which events it handles, in words."""
+        """A description of the events that it handles."""
         return self._description
 
     def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """Return a description, and the entities that are known beforehand."""
+        """Return a description, and the entities that are known in advance."""
         return super().describe()[0], list(self._entities)
 
     def handle(self, event: Event, context: LaunchContext) -> OptionalEntities:
-        """Return the entities, or what the callable returns."""
+        """Return the entities, or the return value of the callable."""
         super().handle(event, context)
         return self._callback(event, context) if self._callback else self._entities
 
@@ -128,7 +127,7 @@ class OnActionEventBase(BaseEventHandler):
 def split_callback(
     on_event: SomeEntitiesType | EventCallback,
 ) -> tuple[EventCallback | None, list[LaunchDescriptionEntity]]:
-    """Return `on_event` as a callable and no entities, or as None and a list of entities.
+    """Return a callable and an empty list, or None and a list of entities.
 
     Raises TypeError if it is neither.
     """

@@ -1,11 +1,11 @@
-"""The event handlers of launch files: processes start, write and exit; actions complete; the launch ends."""
+"""The event handlers of launch files: for processes, for actions that complete, and for the end of the launch."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any, cast
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ._launch_event_handlers import OnExecutionComplete, OnIncludeLaunchDescription, OnShutdown
 from .action import Action
@@ -68,7 +68,7 @@ IOCallback = Callable[[Any], OptionalEntities]
 
 
 class OnProcessIO(OnActionEventBase):
-    """Handle the output of a process, bytes as they come; each callable gets the event alone."""
+    """Handle the output of a process as it comes; each callable gets only the event."""
 
     def __init__(
         self,
@@ -81,12 +81,12 @@ class OnProcessIO(OnActionEventBase):
     ) -> None:
         def dispatch(event: Event, context: LaunchContext) -> OptionalEntities:
             io = cast(ProcessIO, event)
-            for wanted, callback in (
+            for is_from_stream, callback in (
                 (io.from_stdout, on_stdout),
                 (io.from_stderr, on_stderr),
                 (io.from_stdin, on_stdin),
             ):
-                if wanted and callback is not None:
+                if is_from_stream and callback is not None:
                     return callback(io)
             return None
 
@@ -99,4 +99,4 @@ class OnProcessIO(OnActionEventBase):
         )
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -1,4 +1,4 @@
-"""The errors of the launch stand-in; the real package keeps each beside its own subject."""
+"""The errors of the launch stand-in, which the real package defines in several modules."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ class SubstitutionFailure(RuntimeError):
 
 
 class InvalidConditionExpressionError(ValueError):
-    """A condition did not come out as true, false, 1 or 0."""
+    """The text of a condition is not true, false, 1 or 0."""
 
 
 class InvalidPythonLaunchFileError(ValueError):
@@ -18,7 +18,7 @@ class InvalidPythonLaunchFileError(ValueError):
 
 
 class InvalidLaunchFileError(Exception):
-    """A launch file could not be loaded; the text lists what went wrong."""
+    """A launch file could not be loaded; the message lists the errors."""
 
     def __init__(self, extension: str = "", *, likely_errors: Sequence[Exception] = ()) -> None:
         if not extension or not likely_errors:

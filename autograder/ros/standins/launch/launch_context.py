@@ -1,4 +1,4 @@
-"""The context: what a running launch knows, from configurations and environment to event handlers."""
+"""The context: the state of a running launch, such as its configurations, environment and event handlers."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from .event import Event
 
 
 class Handler(Protocol):
-    """What the context needs of an event handler; `launch.event_handler.BaseEventHandler` is one."""
+    """The part of an event handler that the context uses; `launch.event_handler.BaseEventHandler` is one."""
 
     def matches(self, event: Event) -> bool:
-        """Whether `event` is for this handler."""
+        """Return whether this handler matches `event`."""
 
     def handle(self, event: Event, context: LaunchContext) -> Any:
         """Handle `event`; return entities to visit next, or None."""
 
 
 class Performable(Protocol):
-    """What the context needs of a substitution; `launch.Substitution` is one."""
+    """The part of a substitution that the context uses; `launch.Substitution` is one."""
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the string that this substitution stands for in `context`."""
+        """Return the text of this substitution in `context`."""
 
 
 class _Locals:
@@ -42,10 +42,10 @@ class _Locals:
 
 
 class LaunchContext:
-    """What is known while a launch description is executed.
+    """The state of a launch while a launch description is executed.
 
-    Launch configurations are a dictionary of strings that groups save and restore. The environment is the
-    process's own, as it is in the real package, so that launch files see it in ``os.environ``.
+    Launch configurations are a dictionary of strings that groups save and restore. The environment is that of the
+    process, as in the real package, so that launch files see it in ``os.environ``.
     """
 
     def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
@@ -76,7 +76,7 @@ class LaunchContext:
         return _Locals(self.get_locals_as_dict())
 
     def extend_globals(self, extensions: dict[str, Any]) -> None:
-        """Add `extensions` to the local values for good; inner values of the same names hide them."""
+        """Add `extensions` to the local values permanently; inner values of the same names hide them."""
         self._globals.update(extensions)
 
     def extend_locals(self, extensions: dict[str, Any]) -> None:
@@ -97,7 +97,7 @@ class LaunchContext:
         self._configuration_stack.append(dict(self.launch_configurations))
 
     def _pop_launch_configurations(self) -> None:
-        # In place: callers may hold on to the dictionary.
+        # Changes the dictionary in place, because callers may keep a reference to it.
         saved = self._pop(self._configuration_stack, "launch configurations")
         self.launch_configurations.clear()
         self.launch_configurations.update(saved)
@@ -112,9 +112,9 @@ class LaunchContext:
         self._replace_environment(self._initial_environment)
 
     @staticmethod
-    def _pop(stack: list[dict[str, Any]], what: str) -> dict[str, Any]:
+    def _pop(stack: list[dict[str, Any]], name: str) -> dict[str, Any]:
         if not stack:
-            raise RuntimeError(f"{what} stack unexpectedly empty")
+            raise RuntimeError(f"{name} stack unexpectedly empty")
         return stack.pop()
 
     @staticmethod
@@ -123,7 +123,7 @@ class LaunchContext:
         os.environ.update(values)
 
     def register_event_handler(self, event_handler: Handler, append: bool = False) -> None:
-        """Register `event_handler`: before the others, or after them with `append`."""
+        """Register `event_handler` before the others, or after them with `append`."""
         if append:
             self._event_handlers.append(event_handler)
         else:
@@ -134,7 +134,7 @@ class LaunchContext:
         self._event_handlers.remove(event_handler)
 
     def would_handle_event(self, event: Event) -> bool:
-        """Whether a registered handler waits for `event`."""
+        """Return whether a registered handler matches `event`."""
         return any(handler.matches(event) for handler in tuple(self._event_handlers))
 
     def add_completion_future(self, completion_future: asyncio.Future[None]) -> None:
@@ -142,7 +142,7 @@ class LaunchContext:
         self._completion_futures.append(completion_future)
 
     def start_task(self, coroutine: Coroutine[Any, Any, None]) -> None:
-        """Run `coroutine` beside the launch, which cancels it should it break off."""
+        """Run `coroutine` concurrently with the launch, which cancels it if the launch is aborted."""
         if self.asyncio_loop is None:
             raise RuntimeError("the launch context is used outside of a running LaunchService")
         task = self.asyncio_loop.create_task(coroutine)
@@ -150,7 +150,7 @@ class LaunchContext:
         task.add_done_callback(self._tasks.discard)
 
     def emit_event_sync(self, event: Event) -> None:
-        """Queue `event`; to be called from the launch's own thread."""
+        """Queue `event`; must be called from the launch's own thread."""
         self._event_queue.put_nowait(event)
 
     async def emit_event(self, event: Event) -> None:

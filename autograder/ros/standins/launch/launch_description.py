@@ -1,4 +1,4 @@
-"""The launch description: what a launch file returns."""
+"""The launch description, which a launch file returns."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .logging import get_logger
 
 
 class LaunchDescription(LaunchDescriptionEntity):
-    """Entities to be executed one after the other."""
+    """Entities that are executed in order."""
 
     def __init__(
         self,
@@ -25,7 +25,7 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     @property
     def deprecated(self) -> bool:
-        """Whether a warning is given when it is executed."""
+        """Whether executing it logs a warning."""
         return self.deprecated_reason is not None
 
     def add_entity(self, entity: LaunchDescriptionEntity) -> None:
@@ -40,8 +40,8 @@ class LaunchDescription(LaunchDescriptionEntity):
         """Return the entities."""
         if self.deprecated_reason is not None:
             path = context.get_locals_as_dict().get("current_launch_file_path")
-            what = "deprecated launch description" if path is None else f"launch file [{path}] is deprecated"
-            get_logger("launch").warning("%s: %s", what, self.deprecated_reason)
+            subject = "deprecated launch description" if path is None else f"launch file [{path}] is deprecated"
+            get_logger("launch").warning("%s: %s", subject, self.deprecated_reason)
         return self.entities
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
@@ -49,9 +49,9 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self.entities
 
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[ArgumentDeclaration]:
-        """Return the declared arguments, those of included launch files too as far as these can be loaded."""
-        found = self.get_launch_arguments_with_include_launch_description_actions(conditional_inclusion)
-        return [argument for argument, _ in found]
+        """Return the declared arguments, including those of included launch files that can be loaded."""
+        arguments = self.get_launch_arguments_with_include_launch_description_actions(conditional_inclusion)
+        return [argument for argument, _ in arguments]
 
     def get_launch_arguments_with_include_launch_description_actions(
         self, conditional_inclusion: bool = False

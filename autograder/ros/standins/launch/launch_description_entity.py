@@ -9,10 +9,10 @@ from .launch_context import LaunchContext
 
 
 class LaunchDescriptionEntity:
-    """Something that can be visited, described and waited for."""
+    """The base class of entities, which can be visited, described and awaited."""
 
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        """Do what the entity is for; return further entities to visit."""
+        """Execute the entity; return further entities to visit."""
         return None
 
     def describe(self) -> str:
@@ -24,11 +24,11 @@ class LaunchDescriptionEntity:
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the entities that may be visited, each group with its condition in words."""
+        """Return the entities that may be visited, each group with a description of its condition."""
         return []
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
-        """Return a future that is done when the entity is, or None if it is at once."""
+        """Return a future that is done when the entity is, or None if the entity is done immediately."""
         return None
 
 

@@ -1,4 +1,4 @@
-"""Where a launch description comes from: an object, or a file."""
+"""Sources of launch descriptions: an object, or a file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .substitution import (
 
 
 class LaunchDescriptionSource:
-    """A launch description that is there already, or a location that `load` reads it from when needed."""
+    """A launch description, or a location from which `load` reads it when it is needed."""
 
     def __init__(
         self,
@@ -34,13 +34,13 @@ class LaunchDescriptionSource:
 
     @property
     def location(self) -> str:
-        """The location: as text once it is known, else described."""
+        """The location as text, or a description of it before it is known."""
         if self._expanded_location is None:
             return describe_substitutions(self._location)
         return self._expanded_location
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
-        """Return the launch description; the errors of loading it pass through."""
+        """Return the launch description; errors of `load` are not caught."""
         if self._expanded_location is None:
             self._expanded_location = perform_substitutions(context, self._location)
         if self._description is None:

@@ -1,10 +1,10 @@
-"""The text of `ros2 launch --print-description`: a launch description as a tree, without running it."""
+"""The text of `ros2 launch --print-description`: a launch description as a tree, without executing it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .actions import EmitEvent, ExecuteProcess, LogInfo, RegisterEventHandler
 from .launch_description import LaunchDescription
@@ -31,10 +31,10 @@ def _tree(entities: Iterable[LaunchDescriptionEntity], indent: str) -> list[str]
         entity = remaining.pop(0)
         lines.append(f"{indent}{'├' if remaining else '└'}── {_line(entity)}")
         if isinstance(entity, RegisterEventHandler):
-            deeper = indent + ("│   " if remaining else "    ")
-            description, yielded = entity.event_handler.describe()
-            lines.append(f"{deeper}└── {description}")
-            lines += _tree(yielded, deeper + "    ")
+            inner_indent = indent + ("│   " if remaining else "    ")
+            description, handler_entities = entity.event_handler.describe()
+            lines.append(f"{inner_indent}└── {description}")
+            lines += _tree(handler_entities, inner_indent + "    ")
     return lines
 
 
@@ -42,8 +42,8 @@ class LaunchIntrospector:
     """Describes launch descriptions."""
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
-        """Return the launch description as text, one line an entity."""
+        """Return the launch description as text, with one line for each entity."""
         return "\n".join([f"{launch_description}", *_tree(launch_description.entities, "")])
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -1,7 +1,7 @@
-"""The service that executes launch descriptions: a loop over events, and an orderly end.
+"""The service that executes launch descriptions: a loop over events, and an orderly shutdown.
 
-However the launch ends, by Ctrl-C, a signal, an error or because nothing is left to do, everything it has
-started has ended when `run` returns.
+Whether the launch ends by Ctrl-C, a signal, an error or because nothing is left to do, all processes that it has
+started have ended when `run` returns.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from .launch_context import LaunchContext
 from .launch_description import LaunchDescription
 from .launch_description_entity import LaunchDescriptionEntity
 
-_ENDING_SIGNALS = (signal.SIGTERM, signal.SIGQUIT, signal.SIGHUP)
+_TERMINATION_SIGNALS = (signal.SIGTERM, signal.SIGQUIT, signal.SIGHUP)
 
 
 class LaunchService:
-    """Executes launch descriptions and what follows from them."""
+    """Executes launch descriptions and the entities that event handlers return."""
 
     def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False, debug: bool = False) -> None:
         if debug:
@@ -53,9 +53,9 @@ class LaunchService:
         return self._task
 
     def emit_event(self, event: Event) -> None:
-        """Emit `event`, from any thread; before the service runs, it waits in the queue."""
+        """Emit `event`, from any thread; the queue keeps it until the service runs."""
         with self._lock:
-            if self._loop is None or self._in_own_thread():
+            if self._loop is None or self._is_in_own_thread():
                 self.context.emit_event_sync(event)
             else:
                 self._loop.call_soon_threadsafe(self.context.emit_event_sync, event)
@@ -65,23 +65,23 @@ class LaunchService:
         self.emit_event(IncludeLaunchDescription(launch_description))
 
     def shutdown(self, force_sync: bool = False) -> Coroutine[None, None, None] | None:
-        """End the launch, from any thread; does nothing if it does not run.
+        """End the launch, from any thread, if it is running.
 
-        From within the running loop a coroutine is returned that does it, unless `force_sync` is set.
+        Within the running loop this returns a coroutine that ends the launch, unless `force_sync` is set.
         """
         with self._lock:
             if self._loop is None:
                 return None
             reason = "LaunchService.shutdown() called"
-            if not self._in_own_thread():
+            if not self._is_in_own_thread():
                 self._loop.call_soon_threadsafe(self._begin_shutdown, reason)
                 return None
 
-            async def later() -> None:
+            async def begin_shutdown() -> None:
                 self._begin_shutdown(reason)
 
             if not force_sync and self._is_in_loop():
-                return later()
+                return begin_shutdown()
             self._begin_shutdown(reason)
             return None
 
@@ -94,7 +94,7 @@ class LaunchService:
         return asyncio.run(self.run_async(shutdown_when_idle=shutdown_when_idle), debug=self._debug or None)
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
-        """Do what `run` does within a running event loop of the main thread."""
+        """Run in the running event loop of the main thread, otherwise like `run`."""
         _require_main_thread()
         logger = launch_logging.get_logger("launch")
         with self._running(), self._signal_handlers():
@@ -104,23 +104,23 @@ class LaunchService:
             canceled: asyncio.CancelledError | None = None
             try:
                 while True:
-                    idle = self._is_idle() and not next_event.done()
-                    if idle and self._shutting_down:
+                    is_idle = self._is_idle() and not next_event.done()
+                    if is_idle and self._shutting_down:
                         break
-                    if idle and shutdown_when_idle:
+                    if is_idle and shutdown_when_idle:
                         self._begin_shutdown("idle")
                     try:
-                        anything: list[asyncio.Future[Any]] = [next_event, *self._pending()]
-                        await asyncio.wait(anything, return_when=asyncio.FIRST_COMPLETED)
+                        awaited: list[asyncio.Future[Any]] = [next_event, *self._pending()]
+                        await asyncio.wait(awaited, return_when=asyncio.FIRST_COMPLETED)
                         self._raise_failures()
                         if next_event.done():
                             event = next_event.result()
                             next_event = asyncio.ensure_future(queue.get())
-                            self._process(event)
+                            self._handle_event(event)
                     except asyncio.CancelledError as error:
                         logger.error("run task was canceled")
                         if canceled is not None or next_event.cancelled():
-                            # For the second time, or together with all other tasks: no time for good manners.
+                            # Cancelled again, or together with all other tasks: do not wait for an orderly shutdown.
                             raise
                         canceled = error
                         self._fail("run task was canceled")
@@ -147,27 +147,27 @@ class LaunchService:
         self.context.is_shutdown = True
 
     def _pending(self) -> list[asyncio.Future[None]]:
-        """Return the futures of entities that are not done."""
+        """Return the futures that are not done."""
         self._futures = [future for future in self._futures if not future.done()]
-        own = self.context._completion_futures
-        own[:] = [future for future in own if not future.done()]
-        return [*self._futures, *own]
+        completion_futures = self.context._completion_futures
+        completion_futures[:] = [future for future in completion_futures if not future.done()]
+        return [*self._futures, *completion_futures]
 
     def _is_idle(self) -> bool:
         return self.context._event_queue.empty() and not self._pending()
 
     def _raise_failures(self) -> None:
-        """Raise the error of a future that failed; a cancelled one has not failed."""
+        """Raise the error of a failed future; cancelled ones have not failed."""
         for futures in (self._futures, self.context._completion_futures):
             for future in [future for future in futures if future.done()]:
                 futures.remove(future)
                 if not future.cancelled():
                     future.result()
 
-    def _process(self, event: Event) -> None:
-        """Let each handler that matches handle `event`, and execute what it yields."""
+    def _handle_event(self, event: Event) -> None:
+        """Let each matching handler handle `event`, and visit the entities that it returns."""
         if isinstance(event, Shutdown):
-            # Before all handlers: what they yield must not start anything that nobody would end.
+            # Set before all handlers, as a process that they start now would not be shut down.
             self._shutting_down = self.context.is_shutdown = True
         for handler in tuple(self.context._event_handlers):
             if not handler.matches(event):
@@ -180,20 +180,20 @@ class LaunchService:
                 self.context._pop_locals()
 
     def _visit(self, entity: LaunchDescriptionEntity) -> None:
-        """Visit `entity` and all that it yields, in order, and remember whom to wait for."""
+        """Visit `entity` and its sub-entities in order, and remember their futures."""
         if not isinstance(entity, LaunchDescriptionEntity):
             raise RuntimeError(
                 f"expected a LaunchDescriptionEntity such as an action, got {type(entity).__name__}: {entity!r}"
             )
-        yielded = entity.visit(self.context)
+        sub_entities = entity.visit(self.context)
         future = entity.get_asyncio_future()
         if future is not None:
             self._futures.append(future)
-        for sub_entity in yielded or ():
+        for sub_entity in sub_entities or ():
             self._visit(sub_entity)
 
     async def _abandon_tasks(self) -> None:
-        """Cancel what still runs, which kills its processes; there is nothing of the kind after a good end."""
+        """Cancel the remaining tasks, which kills their processes; after an orderly shutdown there are none."""
         tasks = tuple(self.context._tasks)
         for task in tasks:
             task.cancel()
@@ -218,9 +218,9 @@ class LaunchService:
 
     @contextlib.contextmanager
     def _signal_handlers(self) -> Iterator[None]:
-        """Turn the signals that end a program into an orderly end of the launch."""
+        """Shut the launch down in an orderly way on signals that end a program."""
         loop = asyncio.get_running_loop()
-        numbers = (signal.SIGINT, *_ENDING_SIGNALS)
+        numbers = (signal.SIGINT, *_TERMINATION_SIGNALS)
         previous = {number: signal.getsignal(number) for number in numbers}
         for number in numbers:
             loop.add_signal_handler(number, self._on_signal, number)
@@ -245,7 +245,7 @@ class LaunchService:
             logger.warning(message)
             self._begin_shutdown("ctrl-c (SIGINT)", due_to_sigint=True)
 
-    def _in_own_thread(self) -> bool:
+    def _is_in_own_thread(self) -> bool:
         # The service runs in the main thread only.
         return threading.current_thread() is threading.main_thread()
 

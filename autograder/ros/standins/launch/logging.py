@@ -1,6 +1,6 @@
-"""Where a launch's words go: its own to screen and `launch.log`, its processes' as each one asks.
+"""The logs of a launch: its own messages go to the screen and `launch.log`, the output of a process as configured.
 
-The log folder is ``$ROS_LOG_DIR``, ``$ROS_HOME/log`` or ``~/.ros/log``, and in it one folder per launch.
+The log folder is ``$ROS_LOG_DIR``, ``$ROS_HOME/log`` or ``~/.ros/log``, with one folder in it for each launch.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 _LOG_FORMAT = "{created:.7f} [{levelname}] [{name}]: {message}"
 _SCREEN_FORMATS = {
@@ -29,7 +29,7 @@ OutputConfig = Mapping[str, "str | Iterable[str]"]
 
 
 class _ScreenHandler(_StreamHandler):
-    """Writes to what is standard output at the time, which notebooks and tests exchange."""
+    """Writes to the current `sys.stdout`, which notebooks and tests replace."""
 
     def __init__(self, format_: str) -> None:
         logging.Handler.__init__(self)
@@ -52,7 +52,7 @@ def _base_directory() -> Path:
 
 
 class LaunchConfig:
-    """The settings of the launch's logging; there is one, `launch_config`."""
+    """The settings of the launch's logging; `launch_config` is the only instance."""
 
     def __init__(self) -> None:
         self.reset()
@@ -69,18 +69,18 @@ class LaunchConfig:
 
     def set_screen_format(self, screen_format: str) -> None:
         """Set the format of the screen: 'default', 'default_with_timestamp' or a format in braces style."""
-        chosen = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT") or screen_format
-        self.screen_handler = _ScreenHandler(_SCREEN_FORMATS.get(chosen, chosen))
+        name = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT") or screen_format
+        self.screen_handler = _ScreenHandler(_SCREEN_FORMATS.get(name, name))
 
     @property
     def log_dir(self) -> str:
-        """The folder of this launch's log files, made when first asked for."""
+        """The folder of this launch's log files, created on first use."""
         if self._log_dir is None:
             base = _base_directory()
             stamp = datetime.now().strftime("%Y-%m-%d-%H-%M-%S-%f")
             self._log_dir = base / f"{stamp}-{socket.gethostname()}-{os.getpid()}"
             self._log_dir.mkdir(parents=True)
-            _point_latest_at(self._log_dir)
+            _update_latest_link(self._log_dir)
         return str(self._log_dir)
 
     @log_dir.setter
@@ -94,7 +94,7 @@ class LaunchConfig:
         return str(Path(self.log_dir) / file_name)
 
     def get_log_file_handler(self, file_name: str, format_: str) -> logging.Handler:
-        """Return the handler that writes to a log file in a format, the same each time."""
+        """Return the handler that writes to a log file in a format; later calls return the same handler."""
         key = f"{file_name} {format_}"
         if key not in self._files:
             handler = _LogFileHandler(self.get_log_file_path(file_name), encoding="utf-8", delay=True)
@@ -103,8 +103,8 @@ class LaunchConfig:
         return self._files[key]
 
 
-def _point_latest_at(log_dir: Path) -> None:
-    """Let ``latest`` point at `log_dir`; two launches may do so at once, then either is right."""
+def _update_latest_link(log_dir: Path) -> None:
+    """Let ``latest`` point at `log_dir`; of two launches at the same time, either may win."""
     temporary = log_dir.with_name(f"{log_dir.name}.latest")
     temporary.symlink_to(log_dir, target_is_directory=True)
     latest = log_dir.with_name("latest")
@@ -118,12 +118,12 @@ launch_config = LaunchConfig()
 
 
 def reset() -> None:
-    """Return the logging of the launch to its defaults."""
+    """Reset the logging of the launch to its defaults."""
     launch_config.reset()
 
 
 def _set_handlers(logger: logging.Logger, handlers: list[logging.Handler]) -> None:
-    """Give `logger` our `handlers` in place of ours from an earlier launch; leave other people's alone."""
+    """Replace the handlers of an earlier launch by `handlers`; keep all other handlers of `logger`."""
     others = [h for h in logger.handlers if not isinstance(h, (_ScreenHandler, _LogFileHandler))]
     logger.handlers[:] = [*others, *handlers]
 
@@ -148,44 +148,44 @@ _NAMED_OUTPUTS: dict[str, dict[str, set[str]]] = {
 }
 
 
-def _normalized(output: str | OutputConfig) -> dict[str, set[str]]:
-    """Return, for stdout, stderr and both, the set of places that `output` names."""
+def _normalize_output(output: str | OutputConfig) -> dict[str, set[str]]:
+    """Return the set of destinations in `output` for stdout, stderr and both."""
     if isinstance(output, str):
         if output not in _NAMED_OUTPUTS:
             raise ValueError(f'{output} is not a valid standard output config i.e. "screen", "log" or "both"')
         return {source: set(_NAMED_OUTPUTS[output].get(source, ())) for source in ("both", "stdout", "stderr")}
-    wanted: dict[str, set[str]] = {"both": set(), "stdout": set(), "stderr": set()}
-    for source, places in output.items():
-        if source not in wanted:
+    destinations: dict[str, set[str]] = {"both": set(), "stdout": set(), "stderr": set()}
+    for source, value in output.items():
+        if source not in destinations:
             raise ValueError(f'{source} is not a valid output source i.e. "stdout", "stderr" or "both"')
-        names = {places} if isinstance(places, str) else set(places)
+        names = {value} if isinstance(value, str) else set(value)
         if not names <= {"screen", "log", "own_log"}:
             raise ValueError(f'{sorted(names)} is not a valid output destination i.e. "screen", "log" or "own_log"')
-        wanted[source] = names
-    return wanted
+        destinations[source] = names
+    return destinations
 
 
 def get_output_loggers(process_name: str, output: str | OutputConfig) -> tuple[logging.Logger, logging.Logger]:
     """Return the loggers of a process's standard output and standard error.
 
-    `output` is 'screen', 'log' (everything to the log file, errors to the screen too), 'both', 'own_log' or
+    `output` is 'screen', 'log' (everything to the log file, standard error also to the screen), 'both', 'own_log' or
     'full', or a mapping from 'stdout', 'stderr' or 'both' to 'screen', 'log', 'own_log' or several of them.
-    Raises ValueError for anything else.
+    Raises ValueError for any other value.
     """
-    wanted = _normalized(output)
+    destinations = _normalize_output(output)
     loggers = []
     for source in ("stdout", "stderr"):
         logger = logging.getLogger(f"{process_name}-{source}")
         logger.propagate = False
         logger.setLevel(logging.INFO)
         handlers: list[logging.Handler] = []
-        if "screen" in wanted["both"] | wanted[source]:
+        if "screen" in destinations["both"] | destinations[source]:
             handlers.append(_ScreenHandler("{message}"))
-        if "log" in wanted["both"] | wanted[source]:
+        if "log" in destinations["both"] | destinations[source]:
             handlers.append(launch_config.get_log_file_handler(launch_config.log_file_name, "{created:.7f} {message}"))
-        if "own_log" in wanted[source]:
+        if "own_log" in destinations[source]:
             handlers.append(launch_config.get_log_file_handler(f"{process_name}-{source}.log", "{message}"))
-        if "own_log" in wanted["both"]:
+        if "own_log" in destinations["both"]:
             handlers.append(launch_config.get_log_file_handler(f"{process_name}.log", "{message}"))
         _set_handlers(logger, handlers)
         loggers.append(logger)
@@ -193,9 +193,9 @@ def get_output_loggers(process_name: str, output: str | OutputConfig) -> tuple[l
 
 
 def log_launch_config(*, logger: logging.Logger) -> None:
-    """Tell where the log files are and how much is logged."""
+    """Log the folder of the log files and the logging level."""
     logger.info("All log files can be found below %s", launch_config.log_dir)
     logger.info("Default logging verbosity is set to %s", logging.getLevelName(logger.getEffectiveLevel()))
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -9,19 +9,19 @@ from .launch_context import LaunchContext
 
 
 class Substitution:
-    """Something that a launch context turns into a string."""
+    """A text that depends on the launch context."""
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[type[Substitution], dict[str, Any]]:
-        """Return the class and the keyword arguments that a substitution in text, such as ``$(env HOME)``, gives it."""
+        """Return the class and its keyword arguments, from the arguments of a substitution such as ``$(env HOME)``."""
         return cls, {}
 
     def describe(self) -> str:
-        """Return how the substitution is shown before its value is known."""
+        """Return a description of the substitution, for use before its value is known."""
         return self.__repr__()
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the string that this substitution stands for in `context`."""
+        """Return the text of this substitution in `context`."""
         return ""
 
 
@@ -49,10 +49,10 @@ class TextSubstitution(Substitution):
 def normalize_to_list_of_substitutions(subs: SomeSubstitutionsType) -> list[Substitution]:
     """Return `subs`, which may be one string, one substitution or several of them, as a list.
 
-    Raises TypeError for anything else.
+    Raises TypeError for any other type.
     """
 
-    def one(item: object) -> Substitution:
+    def normalize(item: object) -> Substitution:
         if isinstance(item, str):
             return TextSubstitution(text=item)
         if isinstance(item, Substitution):
@@ -63,15 +63,15 @@ def normalize_to_list_of_substitutions(subs: SomeSubstitutionsType) -> list[Subs
         )
 
     if isinstance(subs, (str, Substitution)) or not isinstance(subs, Iterable):
-        return [one(subs)]
-    return [one(item) for item in subs]
+        return [normalize(subs)]
+    return [normalize(item) for item in subs]
 
 
 def perform_substitutions(context: LaunchContext, subs: Iterable[Substitution]) -> str:
-    """Return the texts of `subs`, joined."""
+    """Return the joined texts of `subs`."""
     return "".join(context.perform_substitution(sub) for sub in subs)
 
 
 def describe_substitutions(subs: SomeSubstitutionsType) -> str:
-    """Return how `subs` are shown before their values are known."""
+    """Return a description of `subs`, for use before their values are known."""
     return " + ".join(sub.describe() for sub in normalize_to_list_of_substitutions(subs))

@@ -1,9 +1,9 @@
-"""Stand-in for `launch_pytest`, which cannot be installed by pip: tests that run beside a launch.
+"""Stand-in for `launch_pytest`, which cannot be installed by pip: tests that run during a launch.
 
-It is imported only where the real package is not; names and semantics are those of `launch_pytest` in ROS 2
-Jazzy (https://docs.ros.org/en/jazzy/p/launch_pytest/), the code is the course's own. A fixture made with
+It is imported only if the real package is not installed. Names and semantics are those of `launch_pytest` in ROS 2
+Jazzy (https://docs.ros.org/en/jazzy/p/launch_pytest/); the code was written for the course. A fixture decorated with
 `launch_pytest.fixture` returns a launch description; a test marked ``pytest.mark.launch(fixture=...)`` runs
-while it is launched. What is not covered raises an error that names it. For the real package run
+while it is launched. Any other name raises an error. For the real package run
 `make real-launch`, or source an installation of ROS 2 Jazzy.
 """
 
@@ -12,22 +12,22 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_notice import make_getattr
+from standin_submodules import install_submodule_finder
 
 from ._fixture import fixture
 
 __all__ = ["actions", "fixture", "tools"]
 
 _SUBMODULES = ("actions", "tools")
-_missing = guard(__name__)
+_raise_not_covered = make_getattr(__name__)
 
 
 def __getattr__(name: str) -> Any:
-    # Pytest loads this package at each start, so what needs `launch` is imported when it is used.
+    # Pytest imports this package at each start, so modules that import `launch` are imported on first use.
     if name in _SUBMODULES:
         return importlib.import_module(f"{__name__}.{name}")
-    return _missing(name)
+    return _raise_not_covered(name)
 
 
-offer_submodules()
+install_submodule_finder()

@@ -1,4 +1,4 @@
-"""The decorator that makes a launch description from a fixture."""
+"""The decorator for fixtures that return a launch description."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import pytest
 
 
 @dataclass(frozen=True)
-class Options:
-    """How the launch of a fixture ends."""
+class LaunchOptions:
+    """When the launch of a fixture ends."""
 
     shutdown_when_idle: bool
     auto_shutdown: bool
@@ -24,16 +24,15 @@ def fixture(
     auto_shutdown: bool = True,
     **kwargs: Any,
 ) -> Any:
-    """Make a fixture of a function that returns a launch description, or a sequence that begins with one.
+    """Return a fixture for a function that returns a launch description, or a sequence that starts with one.
 
-    The description is launched before the first test that uses it and shut down after the last one. With
-    ``shutdown_when_idle=False`` the launch goes on when nothing is left to do, and with
-    ``auto_shutdown=False`` the tests wait for it to end of its own. Further arguments, such as ``scope``, go
-    to `pytest.fixture`.
+    The description is launched before the first test that uses it, and shut down after the last one. With
+    ``shutdown_when_idle=False``, the launch continues when nothing is left to do. With ``auto_shutdown=False``, the
+    tests wait until it ends by itself. Other arguments, such as ``scope``, are passed to `pytest.fixture`.
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
-        function._launch_pytest_options = Options(shutdown_when_idle, auto_shutdown)  # type: ignore[attr-defined]
+        function._launch_pytest_options = LaunchOptions(shutdown_when_idle, auto_shutdown)  # type: ignore[attr-defined]
         return pytest.fixture(function, **kwargs)
 
     return decorate if decorated is None else decorate(decorated)

@@ -1,10 +1,10 @@
-"""The action with which a launch description says that the test may begin."""
+"""The action of a launch description that lets the tests start."""
 
 from __future__ import annotations
 
 from launch_testing.actions import ReadyToTest
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["ReadyToTest"]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

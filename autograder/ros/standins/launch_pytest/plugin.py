@@ -1,4 +1,4 @@
-"""The pytest plugin: launches what the fixtures describe, and runs the marked tests beside it."""
+"""The pytest plugin, which launches the descriptions of fixtures and runs the marked tests during the launch."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _RUNS = pytest.StashKey[dict[str, "LaunchRun"]]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the marker known."""
+    """Register the marker."""
     config.addinivalue_line(
         "markers",
         "launch(fixture, shutdown=False): run the test while the launch description of the fixture is launched, "
@@ -57,9 +57,9 @@ def pytest_fixture_setup(fixturedef: FixtureDef[Any], request: pytest.FixtureReq
     return value
 
 
-def _mark(node: pytest.Item | pytest.Collector, obj: Any = None) -> pytest.Mark | None:
-    own = [mark for mark in getattr(obj, "pytestmark", ()) if mark.name == "launch"]
-    return own[-1] if own else node.get_closest_marker("launch")
+def _launch_mark(node: pytest.Item | pytest.Collector, obj: Any = None) -> pytest.Mark | None:
+    marks = [mark for mark in getattr(obj, "pytestmark", ()) if mark.name == "launch"]
+    return marks[-1] if marks else node.get_closest_marker("launch")
 
 
 def _fixture_name(mark: pytest.Mark) -> str:
@@ -71,10 +71,10 @@ def _fixture_name(mark: pytest.Mark) -> str:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makeitem(collector: Any, name: str, obj: Any) -> list[pytest.Item] | None:
-    """Collect launch tests, which may also be coroutines and generators, and give them their fixture."""
+    """Collect launch tests, which may also be coroutines and generators, and add their fixture."""
     if not collector.funcnamefilter(name) or not inspect.isfunction(obj):
         return None
-    mark = _mark(collector, obj)
+    mark = _launch_mark(collector, obj)
     if mark is None:
         return None
     pytest.mark.usefixtures(_fixture_name(mark))(obj)
@@ -83,9 +83,9 @@ def pytest_pycollect_makeitem(collector: Any, name: str, obj: Any) -> list[pytes
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put tests of the end of a launch behind the others that use the same fixture."""
+    """Move tests that run after the end of a launch after the other tests with the same fixture."""
     for item in [item for item in items if _is_after_end(item)]:
-        users = [index for index, other in enumerate(items) if _shares_launch(other, item)]
+        users = [index for index, other in enumerate(items) if _share_launch(other, item)]
         last = max((index for index in users if not _is_after_end(items[index])), default=-1)
         if last > items.index(item):
             items.remove(item)
@@ -93,21 +93,21 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def _is_after_end(item: pytest.Item) -> bool:
-    mark = _mark(item)
+    mark = _launch_mark(item)
     return mark is not None and bool(mark.kwargs.get("shutdown", False))
 
 
-def _shares_launch(one: pytest.Item, other: pytest.Item) -> bool:
-    marks = _mark(one), _mark(other)
-    if marks[0] is None or marks[1] is None or one.path != other.path:
+def _share_launch(first: pytest.Item, second: pytest.Item) -> bool:
+    marks = _launch_mark(first), _launch_mark(second)
+    if marks[0] is None or marks[1] is None or first.path != second.path:
         return False
     return _fixture_name(marks[0]) == _fixture_name(marks[1])
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
-    """Run a launch test beside its launch, or after the end of it."""
-    mark = _mark(pyfuncitem)
+    """Run a launch test during its launch, or after the end of the launch."""
+    mark = _launch_mark(pyfuncitem)
     if mark is None:
         return None
     run = pyfuncitem.config.stash[_RUNS][_fixture_name(mark)]
@@ -120,7 +120,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
 
 
 def _run_of(request: pytest.FixtureRequest) -> LaunchRun:
-    mark = _mark(request.node)
+    mark = _launch_mark(request.node)
     if mark is None:
         raise pytest.UsageError("this fixture is for tests that are marked with pytest.mark.launch(fixture=...)")
     request.getfixturevalue(_fixture_name(mark))

@@ -1,4 +1,4 @@
-"""What the actions and substitutions of `launch_ros` are called in XML and YAML launch files, and how they are read."""
+"""The names and readers of `launch_ros`'s actions and substitutions in XML and YAML launch files."""
 
 from __future__ import annotations
 
@@ -6,9 +6,15 @@ from collections.abc import Callable
 from typing import Any, NoReturn
 
 from launch import Action, Substitution
-from launch._frontend_actions import command_line, pairs, process, texts, values
+from launch._frontend_actions import (
+    attribute_pairs,
+    command_line,
+    process_keywords,
+    substitution_attributes,
+    typed_attributes,
+)
 from launch._frontend_substitutions import name_substitution
-from launch._readers import reads
+from launch._readers import reader_of
 from launch.frontend import Entity, Parser, expose_action
 from launch.frontend.type_utils import get_data_type_from_identifier
 from standin_notice import not_covered
@@ -28,7 +34,7 @@ from .substitutions import ExecutableInPackage, FindPackagePrefix, FindPackageSh
 Keywords = dict[str, Any]
 Nested = dict[tuple[Substitution, ...], Any]
 
-NAMES: dict[str, type[Action]] = {
+ACTIONS_BY_NAME: dict[str, type[Action]] = {
     "node": Node,
     "push-ros-namespace": PushRosNamespace,
     "push_ros_namespace": PushRosNamespace,
@@ -40,101 +46,107 @@ NAMES: dict[str, type[Action]] = {
 }
 
 
-@reads(Node)
+@reader_of(Node)
 def _node(entity: Entity, parser: Parser) -> Keywords:
-    found = process(entity, parser) | texts(
+    keywords = process_keywords(entity, parser) | substitution_attributes(
         entity, parser, package="pkg", executable="exec*", name="name", exec_name="exec_name", namespace="namespace"
     )
     for keyword, name in (("arguments", "args"), ("ros_arguments", "ros_args")):
-        line = entity.get_attr(name, optional=True)
-        if line is not None:
-            found[keyword] = command_line(line, parser)
-    remappings = pairs(entity, parser, "remap", "from", "to")
+        text = entity.get_attr(name, optional=True)
+        if text is not None:
+            keywords[keyword] = command_line(text, parser)
+    remappings = attribute_pairs(entity, parser, "remap", "from", "to")
     if remappings is not None:
-        found["remappings"] = remappings
+        keywords["remappings"] = remappings
     parameters = entity.get_attr("param", data_type=list[Entity], optional=True)
     if parameters is not None:
-        found["parameters"] = [_parameters(one, parser) for one in parameters]
-    return found
+        keywords["parameters"] = [_parameters(element, parser) for element in parameters]
+    return keywords
 
 
 def _parameters(entity: Entity, parser: Parser) -> ParameterFile | Nested:
-    """Return a parameter file, or a parameter with its value or with parameters below it."""
-    file = texts(entity, parser, param_file="from")
-    named = entity.get_attr("name", optional=True) is not None
-    if file and named:
+    """Return a parameter file, or a parameter with its value or with nested parameters."""
+    file = substitution_attributes(entity, parser, param_file="from")
+    is_named = entity.get_attr("name", optional=True) is not None
+    if file and is_named:
         raise RuntimeError("name and from attributes are mutually exclusive")
-    if not file and not named:
+    if not file and not is_named:
         raise ValueError("param Entity should have name or from attribute")
-    substitute = values(entity, bool, "allow_substs")
-    if named:
-        if substitute:
+    options = typed_attributes(entity, bool, "allow_substs")
+    if is_named:
+        if options:
             raise RuntimeError("'allow_substs' can only be used together with 'from' attribute")
-        return _named(entity, parser)
+        return _named_parameter(entity, parser)
     entity.assert_entity_completely_parsed()
-    return ParameterFile(**file, **{name: parser.parse_if_substitutions(value) for name, value in substitute.items()})
+    return ParameterFile(**file, **{name: parser.parse_if_substitutions(value) for name, value in options.items()})
 
 
-def _named(entity: Entity, parser: Parser) -> Nested:
+def _named_parameter(entity: Entity, parser: Parser) -> Nested:
     name = tuple(parser.parse_substitution(entity.get_attr("name")))
     identifier = entity.get_attr("type", optional=True)
     data_type = None if identifier is None else get_data_type_from_identifier(identifier)
     value = entity.get_attr("value", data_type=data_type, optional=True)
-    below = entity.get_attr("param", data_type=list[Entity], optional=True)
+    nested = entity.get_attr("param", data_type=list[Entity], optional=True)
     entity.assert_entity_completely_parsed()
-    if below and value is not None:
+    if nested and value is not None:
         raise RuntimeError("nested parameters and value attributes are mutually exclusive")
-    if below and data_type is not None:
+    if nested and data_type is not None:
         raise RuntimeError("nested parameters and type attributes are mutually exclusive")
-    if below:
-        return {name: {key: found for one in below for key, found in _named(one, parser).items()}}
+    if nested:
+        return {
+            name: {
+                nested_name: nested_value
+                for element in nested
+                for nested_name, nested_value in _named_parameter(element, parser).items()
+            }
+        }
     if value is None:
         raise RuntimeError("either a value attribute or nested params are needed")
     return {name: ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)}
 
 
-@reads(PushRosNamespace)
+@reader_of(PushRosNamespace)
 def _push_ros_namespace(entity: Entity, parser: Parser) -> Keywords:
-    return texts(entity, parser, namespace="namespace*")
+    return substitution_attributes(entity, parser, namespace="namespace*")
 
 
-@reads(SetParameter)
+@reader_of(SetParameter)
 def _set_parameter(entity: Entity, parser: Parser) -> Keywords:
-    return texts(entity, parser, name="name*", value="value*")
+    return substitution_attributes(entity, parser, name="name*", value="value*")
 
 
-@reads(SetUseSimTime)
+@reader_of(SetUseSimTime)
 def _set_use_sim_time(entity: Entity, parser: Parser) -> Keywords:
-    return texts(entity, parser, value="value*")
+    return substitution_attributes(entity, parser, value="value*")
 
 
-@reads(SetParametersFromFile)
+@reader_of(SetParametersFromFile)
 def _set_parameters_from_file(entity: Entity, parser: Parser) -> Keywords:
-    return texts(entity, parser, filename="filename*")
+    return substitution_attributes(entity, parser, filename="filename*")
 
 
-@reads(SetRemap)
+@reader_of(SetRemap)
 def _set_remap(entity: Entity, parser: Parser) -> Keywords:
-    return texts(entity, parser, src="from*", dst="to*")
+    return substitution_attributes(entity, parser, src="from*", dst="to*")
 
 
-@reads(SetROSLogDir)
+@reader_of(SetROSLogDir)
 def _set_ros_log_dir(entity: Entity, parser: Parser) -> Keywords:
-    return texts(entity, parser, new_log_dir="new_log_dir*")
+    return substitution_attributes(entity, parser, new_log_dir="new_log_dir*")
 
 
-def _refuse(tag: str, reason: str) -> Callable[[Entity, Parser], NoReturn]:
-    def refuse(entity: Entity, parser: Parser) -> NoReturn:
+def _not_covered_parser(tag: str, reason: str) -> Callable[[Entity, Parser], NoReturn]:
+    def parse(entity: Entity, parser: Parser) -> NoReturn:
         raise not_covered(tag, standin="launch_ros", reason=reason)
 
-    return refuse
+    return parse
 
 
-for _tag, _action in NAMES.items():
+for _tag, _action in ACTIONS_BY_NAME.items():
     expose_action(_tag)(_action)
 for _tag in ("node_container", "load_composable_node"):
-    expose_action(_tag)(_refuse(_tag, "Composable nodes need C++ components"))
-expose_action("ros_timer")(_refuse("ros_timer", ""))
+    expose_action(_tag)(_not_covered_parser(_tag, "Composable nodes need C++ components"))
+expose_action("ros_timer")(_not_covered_parser("ros_timer", ""))
 
 name_substitution("exec-in-pkg", ExecutableInPackage, "executable", "package")
 name_substitution("find-pkg-prefix", FindPackagePrefix, "package")

@@ -1,6 +1,6 @@
-"""Temporary parameter files, which live until the launching program ends.
+"""Temporary parameter files, which are deleted when the launching program ends.
 
-They live that long because a node that is respawned reads them again.
+They are not deleted earlier, because a respawned node reads them again.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
 
 
 def temporary_parameter_file(text: str) -> Path:
-    """Return a new temporary file with `text` in it."""
+    """Return a new temporary file that contains `text`."""
     with tempfile.NamedTemporaryFile(
         "w", prefix="launch_params_", dir=_folder().name, delete=False, encoding="utf-8"
     ) as file:

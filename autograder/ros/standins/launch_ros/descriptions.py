@@ -1,8 +1,8 @@
-"""Descriptions of parameters and parameter files; those of composable nodes are not covered."""
+"""Descriptions of parameters and parameter files; descriptions of composable nodes are not covered."""
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .parameter_descriptions import Parameter, ParameterFile, ParameterValue
 
@@ -10,4 +10,4 @@ __all__ = ["Parameter", "ParameterFile", "ParameterValue"]
 
 _COMPOSABLE = "Composable nodes need C++ components and composition_interfaces, for which there is no wheel"
 
-__getattr__ = guard(__name__, {"ComposableNode": _COMPOSABLE, "ComposableLifecycleNode": _COMPOSABLE})
+__getattr__ = make_getattr(__name__, {"ComposableNode": _COMPOSABLE, "ComposableLifecycleNode": _COMPOSABLE})

@@ -1,4 +1,4 @@
-"""Parameters with a type of their own, and parameter files in which substitutions may be."""
+"""Parameters with an explicit type, and parameter files with substitutions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from launch.frontend import parse_substitution
 from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch.utilities.type_utils import normalize_typed_substitution, perform_typed_substitution
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ._temporary import temporary_parameter_file
 
@@ -20,10 +20,10 @@ __all__ = ["Parameter", "ParameterFile", "ParameterValue"]
 
 
 class ParameterValue:
-    """A value, or substitutions that give one; `value_type` is what their text is read as.
+    """A value, or substitutions whose text is converted to `value_type`.
 
-    Without a type YAML's rules hold, so that a text such as ``1e3`` or ``yes`` does not stay a string; with
-    ``value_type=str`` it does.
+    Without a type, the text is read by YAML's rules, by which ``1e3`` and ``yes`` are not strings. With
+    ``value_type=str`` it stays a string.
     """
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
@@ -31,12 +31,12 @@ class ParameterValue:
         self.value_type = value_type
 
     def evaluate(self, context: LaunchContext) -> Any:
-        """Return the value in `context`; ValueError if it is not of the type."""
+        """Return the value in `context`; raise ValueError if it cannot be converted to the type."""
         return perform_typed_substitution(context, self.value, self.value_type)
 
 
 class Parameter:
-    """One parameter: name, and value as `ParameterValue` has it."""
+    """A parameter: a name, and a value as in `ParameterValue`."""
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, *, value_type: Any = None) -> None:
         self.name = normalize_to_list_of_substitutions(name)
@@ -48,12 +48,12 @@ class Parameter:
         return self._value.value
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
-        """Return name and value in `context`."""
+        """Return the name and the value in `context`."""
         return perform_substitutions(context, self.name), self._value.evaluate(context)
 
 
 class ParameterFile:
-    """A parameter file; with `allow_substs` substitutions such as ``$(var name)`` in it are performed."""
+    """A parameter file; with `allow_substs`, substitutions in it such as ``$(var name)`` are performed."""
 
     def __init__(
         self,
@@ -67,9 +67,9 @@ class ParameterFile:
         self.allow_substs = normalize_typed_substitution(allow_substs, bool)
 
     def evaluate(self, context: LaunchContext) -> Path:
-        """Return the path of the file, or of a temporary one in which the substitutions are performed.
+        """Return the path of the file, or of a temporary one with the substitutions performed.
 
-        Raises SubstitutionFailure if one of them fails or the file is not YAML.
+        Raises SubstitutionFailure if a substitution fails or the result is not YAML.
         """
         path = Path(perform_substitutions(context, self.param_file))
         if not perform_typed_substitution(context, self.allow_substs, bool):
@@ -84,4 +84,4 @@ class ParameterFile:
         return temporary_parameter_file(substituted)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -1,4 +1,4 @@
-"""Substitutions that find packages, and what is in them, through the ament index."""
+"""Substitutions that find packages, and files in them, through the ament index."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from launch import LaunchContext, SomeSubstitutionsType, Substitution
 from launch.substitutions import SubstitutionFailure
 from launch.substitutions.paths import DirectorySubstitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare", "Parameter"]
 
 
-def _described(parts: list[Substitution]) -> str:
+def _describe(parts: list[Substitution]) -> str:
     return " + ".join(part.describe() for part in parts)
 
 
 class FindPackage(DirectorySubstitution):
-    """A folder of a package; PackageNotFoundError if the package is not in the ament index."""
+    """A folder of a package; raises PackageNotFoundError if the package is not in the ament index."""
 
     def __init__(self, package: SomeSubstitutionsType) -> None:
         self.package = normalize_to_list_of_substitutions(package)
 
     def describe(self) -> str:
         """Return a description with the package."""
-        return f"{type(self).__name__}(pkg={_described(self.package)})"
+        return f"{type(self).__name__}(pkg={_describe(self.package)})"
 
     def find(self, package_name: str) -> str:
         """Return the folder."""
@@ -66,10 +66,10 @@ class ExecutableInPackage(FindPackagePrefix):
 
     def describe(self) -> str:
         """Return a description with package and executable."""
-        return f"ExecInPkg(pkg={_described(self.package)}, exec={_described(self.executable)})"
+        return f"ExecInPkg(pkg={_describe(self.package)}, exec={_describe(self.executable)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the path; SubstitutionFailure if there is no such executable in the package."""
+        """Return the path; raise SubstitutionFailure if the package has no such executable."""
         executable = perform_substitutions(context, self.executable)
         package = perform_substitutions(context, self.package)
         prefix = super().perform(context)
@@ -78,10 +78,10 @@ class ExecutableInPackage(FindPackagePrefix):
             raise SubstitutionFailure(
                 f"package '{package}' found at '{prefix}', but libexec directory '{libexec}' does not exist"
             )
-        found = shutil.which(executable, path=os.fspath(libexec))
-        if found is None:
+        path = shutil.which(executable, path=os.fspath(libexec))
+        if path is None:
             raise SubstitutionFailure(f"executable '{executable}' not found on the libexec directory '{libexec}' ")
-        return found
+        return path
 
 
 class Parameter(Substitution):
@@ -89,8 +89,8 @@ class Parameter(Substitution):
 
     def __init__(self, name: SomeSubstitutionsType, *, default: Any = None) -> None:
         self.name = normalize_to_list_of_substitutions(name)
-        plain = isinstance(default, (str, Substitution)) or not isinstance(default, Iterable)
-        items = [default] if plain else default
+        is_single = isinstance(default, (str, Substitution)) or not isinstance(default, Iterable)
+        items = [default] if is_single else default
         self.default = (
             None
             if default is None
@@ -99,10 +99,10 @@ class Parameter(Substitution):
 
     def describe(self) -> str:
         """Return a description with the name."""
-        return f"Parameter(name={_described(self.name)})"
+        return f"Parameter(name={_describe(self.name)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the value, or the default; SubstitutionFailure without either."""
+        """Return the value, or the default; raise SubstitutionFailure without either."""
         name = perform_substitutions(context, self.name)
         for item in context.launch_configurations.get("global_params", ()):
             if isinstance(item, tuple) and item[0] == name:
@@ -112,4 +112,4 @@ class Parameter(Substitution):
         return perform_substitutions(context, self.default)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -1,4 +1,4 @@
-"""The action with which a launch description says that the test may begin."""
+"""The action of a launch description that lets the tests start."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Callable
 from typing import Any
 
 from launch import Action, LaunchContext
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["ReadyToTest"]
 
 
 class ReadyToTest(Action):
-    """Lets the test begin when it is executed."""
+    """Lets the tests start when it is executed."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -23,7 +23,7 @@ class ReadyToTest(Action):
         self._callbacks.append(callback)
 
     def execute(self, context: LaunchContext) -> None:
-        """Let it begin."""
+        """Let the tests start."""
         for callback in self._callbacks:
             try:
                 callback()
@@ -31,4 +31,4 @@ class ReadyToTest(Action):
                 logging.getLogger(__name__).error(error)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

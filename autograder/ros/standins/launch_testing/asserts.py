@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from launch.actions import ExecuteLocal
 from launch.events.process import ProcessExited
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .util import NO_CMD_ARGS, resolveProcesses
 
@@ -50,12 +50,14 @@ def assertExitCodes(
     *,
     strict_proc_matching: bool = True,
 ) -> None:
-    """Fail unless each process that is meant (see `resolveProcesses`) has ended with an allowed exit code."""
+    """Fail unless each matching process (see `resolveProcesses`) has ended with an allowed exit code."""
     for code in allowable_exit_codes:
         assert isinstance(code, int), f"Provided exit code {code} is not an int"
-    meant = resolveProcesses(proc_info, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching)
-    for event in [proc_info[one] for one in meant]:
-        if not isinstance(event, ProcessExited):  # it was started, and has not ended
+    processes = resolveProcesses(
+        proc_info, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching
+    )
+    for event in [proc_info[action] for action in processes]:
+        if not isinstance(event, ProcessExited):  # the process is still running
             raise AttributeError(f"'{type(event).__name__}' object has no attribute 'returncode'")
         code = event.returncode
         assert code in allowable_exit_codes, f"Proc {event.process_name} exited with code {code}"
@@ -72,38 +74,40 @@ def assertInStream(
     strip_ansi_escape_sequences: bool = True,
     stream: str = "stderr",
 ) -> None:
-    """Fail unless a text is in the output of one of the processes that are meant (see `resolveProcesses`).
+    """Fail unless a text is in the output of one of the matching processes (see `resolveProcesses`).
 
     Args:
         proc_output: the output of the processes.
-        expected_output: a text, a compiled regular expression that is searched for, or a list of them, in this order.
-        process: the action of a process, a part of a name, or None for all processes.
-        cmd_args: with a name: an argument, or several, that the process was started with, or NO_CMD_ARGS.
-        output_filter: applied to the output first.
-        strict_proc_matching: a name may not mean several processes.
-        strip_ansi_escape_sequences: take colours out of the output first.
+        expected_output: a text, a compiled regular expression, or a list of them, which must come in this order.
+        process: the action of a process, a part of its name, or None for all processes.
+        cmd_args: with a name, one or several arguments of the process, or NO_CMD_ARGS.
+        output_filter: a function that is applied to the output first.
+        strict_proc_matching: whether a name must match only one process.
+        strip_ansi_escape_sequences: whether to remove colours from the output first.
         stream: "stdout" or "stderr".
 
     Raises:
-        ValueError: the stream, the filter or the expected output is none.
+        ValueError: the stream, the filter or the expected output is invalid.
     """
-    meant = resolveProcesses(proc_output, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching)
+    processes = resolveProcesses(
+        proc_output, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching
+    )
     if output_filter is not None and not callable(output_filter):
         raise ValueError("output_filter is not callable")
     if stream not in ("stdout", "stderr"):
         raise ValueError("Invalid value for stream; must be 'stdout' or 'stderr'")
-    for one in meant:
-        text = "".join(event.text.decode() for event in proc_output[one] if getattr(event, f"from_{stream}"))
+    for action in processes:
+        text = "".join(event.text.decode() for event in proc_output[action] if getattr(event, f"from_{stream}"))
         if strip_ansi_escape_sequences:
             text = _ESCAPE.sub("", text)
-        if _holds(output_filter(text) if output_filter else text, expected_output):
+        if _contains(output_filter(text) if output_filter else text, expected_output):
             return
-    names = ", ".join(sorted((one.process_details or {})["name"] for one in meant))
+    names = ", ".join(sorted((action.process_details or {})["name"] for action in processes))
     raise AssertionError(f"Did not find '{expected_output}' in output for any of the matching processes: {names}")
 
 
-def _holds(text: str, expected: Any) -> bool:
-    """Return whether a text holds what is expected, the parts of a list on lines of their own, in this order."""
+def _contains(text: str, expected: Any) -> bool:
+    """Return whether a text contains the expected output; the parts of a list are on separate lines, in order."""
     if isinstance(expected, str):
         return expected in text
     if isinstance(expected, re.Pattern):
@@ -127,27 +131,27 @@ def assertInStderr(proc_output: IoHandler, *args: Any, **kwargs: Any) -> None:
 
 
 def assertDefaultStream() -> str:
-    """Return the stream that `assertInStream` looks at if it is not told."""
+    """Return the default stream of `assertInStream`."""
     return "stderr"
 
 
 class SequentialTextChecker:
-    """Finds texts in pieces of output, each behind the last one."""
+    """Finds texts in pieces of output, each after the last one."""
 
     def __init__(self, output: Sequence[str]) -> None:
         self._pieces = output
-        self._piece = 0
-        self._place = 0
+        self._index = 0
+        self._position = 0
 
     def assertInText(self, msg: str) -> None:
-        """Fail unless the text comes behind the last one, in one piece."""
-        place = self._place
-        for number in range(self._piece, len(self._pieces)):
-            found = self._pieces[number].find(msg, place)
-            if found >= 0:
-                self._piece, self._place = number, found + len(msg)
+        """Fail unless the text comes after the last one, within one piece."""
+        position = self._position
+        for index in range(self._index, len(self._pieces)):
+            match_start = self._pieces[index].find(msg, position)
+            if match_start >= 0:
+                self._index, self._position = index, match_start + len(msg)
                 return
-            place = 0
+            position = 0
         raise AssertionError(
             f"'{msg}' not found in sequence after previous match.  "
             f"The output near the last matched line:\n{self.get_nearby_lines()}"
@@ -157,19 +161,19 @@ class SequentialTextChecker:
 
     def get_nearby_lines(self) -> str:
         """Return some lines before and after the last match."""
-        text, place = "".join(self._pieces), len("".join(self._pieces[: self._piece])) + self._place
-        matched, following = text[:place], text[place:]
-        near = "\n".join(matched.split("\n")[-3:]) + "\n".join(following.split("\n")[:3])
-        return near.rstrip("\n")
+        text, position = "".join(self._pieces), len("".join(self._pieces[: self._index])) + self._position
+        before, after = text[:position], text[position:]
+        lines = "\n".join(before.split("\n")[-3:]) + "\n".join(after.split("\n")[:3])
+        return lines.rstrip("\n")
 
 
 @contextmanager
 def assertSequentialStdout(
     proc_output: IoHandler, process: ExecuteLocal | str, cmd_args: Any = None
 ) -> Iterator[SequentialTextChecker]:
-    """Give a checker of the order in which a process wrote texts."""
-    (meant,) = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)
-    yield SequentialTextChecker([event.text.decode() for event in proc_output[meant]])
+    """Return a checker for the order of the texts that a process wrote."""
+    (action,) = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)
+    yield SequentialTextChecker([event.text.decode() for event in proc_output[action]])
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -1,4 +1,4 @@
-"""The output of the processes of a launch, in the order in which it came, and waiting for a text in it."""
+"""The output of the processes of a launch, in the order in which it came."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from launch.actions import ExecuteLocal
 from launch.events.process import ProcessIO
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .asserts import assertInStream
 from .util import NoMatchingProcessException, resolveProcesses
@@ -17,14 +17,14 @@ __all__ = ["ActiveIoHandler", "IoHandler"]
 
 
 class IoHandler:
-    """Holds the output of processes. Iterating gives the events of all of them."""
+    """Records the output of processes; iterating over it yields the events of all processes."""
 
     def __init__(self) -> None:
         self._events: list[ProcessIO] = []
         self._by_name: dict[str, list[ProcessIO]] = {}
 
     def track(self, process_name: str) -> None:
-        """Know a process that has not written anything yet."""
+        """Add a process that has not written anything yet."""
         self._by_name.setdefault(process_name, [])
 
     def append(self, process_io: ProcessIO) -> None:
@@ -36,7 +36,7 @@ class IoHandler:
         return iter(self._events)
 
     def __getitem__(self, key: ExecuteLocal | str) -> list[ProcessIO]:
-        """Return the output of a process, by its name or action; KeyError if it is not known."""
+        """Return the output of a process, by its name or action; raise KeyError for an unknown process."""
         name = key if isinstance(key, str) else (key.process_details or {})["name"]
         return list(self._by_name[name])
 
@@ -50,7 +50,7 @@ class IoHandler:
 
 
 class ActiveIoHandler:
-    """Holds the output of processes that still run, and lets tests in another thread wait for it."""
+    """Records the output of running processes, so that tests in another thread can wait for it."""
 
     def __init__(self) -> None:
         self._io_handler = IoHandler()
@@ -58,11 +58,11 @@ class ActiveIoHandler:
 
     @property
     def io_event(self) -> threading.Condition:
-        """Notified of all output."""
+        """A condition that is notified of all output."""
         return self._changed
 
     def track(self, process_name: str) -> None:
-        """Know a process that has not written anything yet."""
+        """Add a process that has not written anything yet."""
         with self._changed:
             self._io_handler.track(process_name)
             self._changed.notify_all()
@@ -103,13 +103,13 @@ class ActiveIoHandler:
     ) -> bool:
         """Return whether a text came within `timeout` seconds.
 
-        The other arguments are those of `assertInStream`; without a process, one of them is enough.
+        The other arguments are those of `assertInStream`. Without a process, the output of any process counts.
 
         Raises:
-            Exception: the time is over, and there is no such process.
+            Exception: there is no such process after `timeout` seconds.
         """
 
-        def found() -> bool:
+        def is_found() -> bool:
             try:
                 assertInStream(
                     self._io_handler,
@@ -119,12 +119,12 @@ class ActiveIoHandler:
                     strict_proc_matching=strict_proc_matching,
                     **options,
                 )
-            except (AssertionError, NoMatchingProcessException):  # it may come
+            except (AssertionError, NoMatchingProcessException):  # it may still come
                 return False
             return True
 
         with self._changed:
-            if self._changed.wait_for(found, timeout):
+            if self._changed.wait_for(is_found, timeout):
                 return True
         resolveProcesses(self, process=process, cmd_args=cmd_args, strict_proc_matching=False)
         return False
@@ -134,4 +134,4 @@ class ActiveIoHandler:
         assert self.waitFor(*args, **kwargs), "Waiting for output timed out"
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

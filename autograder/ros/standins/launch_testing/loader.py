@@ -1,4 +1,4 @@
-"""The tests of a file with ``generate_test_description``: one set of them for each launch."""
+"""The tests of a file with ``generate_test_description``, loaded for each of its launches."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from launch import LaunchDescription, LaunchDescriptionEntity
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .actions import ReadyToTest
 
@@ -19,52 +19,52 @@ READY_SECONDS = 15.0
 
 @dataclass(frozen=True)
 class TestRun:
-    """One launch, with the tests beside it and those after its end.
+    """A launch, with the tests that run during it and after its end.
 
     Attributes:
-        name: of the file.
-        describe: returns the launch description, or a tuple of it and of what tests may ask for.
-        parameters: what `parametrize` gives this launch.
-        beside: the tests that run while it is launched.
-        after: those that run after its end.
-        given: what tests get as arguments, by name; filled when the launch is made.
+        name: the name of the file.
+        generate: returns the launch description, or a tuple of it and additional arguments of tests.
+        parameters: the arguments of this launch from `parametrize`.
+        active_tests: the tests that run during the launch.
+        post_shutdown_tests: the tests that run after its end.
+        arguments: the arguments that tests can have, by name; set when the launch starts.
     """
 
     __test__ = False  # for pytest
 
     name: str
-    describe: Callable[[], Any]
+    generate: Callable[[], Any]
     parameters: Mapping[str, Any]
-    beside: unittest.TestSuite
-    after: unittest.TestSuite
-    given: dict[str, Any] = field(default_factory=dict)
+    active_tests: unittest.TestSuite
+    post_shutdown_tests: unittest.TestSuite
+    arguments: dict[str, Any] = field(default_factory=dict)
 
     @property
     def keep_alive(self) -> bool:
-        """Whether the launch goes on when nothing is left to do."""
-        return bool(getattr(self.describe, "__markers__", {}).get("keep_alive", False))
+        """Whether the launch continues when nothing is left to do."""
+        return bool(getattr(self.generate, "__markers__", {}).get("keep_alive", False))
 
     @property
     def timeout(self) -> float:
-        """The seconds until the tests have to begin."""
-        return float(getattr(self.describe, "__ready_to_test_action_timeout__", READY_SECONDS))
+        """The seconds until the tests have to start."""
+        return float(getattr(self.generate, "__ready_to_test_action_timeout__", READY_SECONDS))
 
     @property
     def cases(self) -> list[unittest.TestCase]:
-        """All tests, in their order."""
-        return [*_cases(self.beside), *_cases(self.after)]
+        """All tests in order."""
+        return [*_cases(self.active_tests), *_cases(self.post_shutdown_tests)]
 
     def __str__(self) -> str:
         return self.name + _suffix(self.parameters)
 
-    def described(self, ready: Callable[[], None]) -> tuple[LaunchDescription, dict[str, Any]]:
-        """Return the launch description, which calls `ready` when the tests may begin, and what tests may ask for.
+    def describe(self, ready: Callable[[], None]) -> tuple[LaunchDescription, dict[str, Any]]:
+        """Return the launch description, which calls `ready` when the tests may start, and the arguments of tests.
 
         Raises:
-            Exception: there is no ReadyToTest in it.
+            Exception: the description has no ReadyToTest.
         """
-        made = self.describe()
-        description, context = made if isinstance(made, tuple) else (made, {})
+        result = self.generate()
+        description, context = result if isinstance(result, tuple) else (result, {})
         action = next(_ready_actions(description.entities), None)
         if action is None:
             raise Exception(
@@ -74,9 +74,9 @@ class TestRun:
         return description, context
 
     def validate(self) -> None:
-        """Raise Exception if `generate_test_description` takes other arguments than `parametrize` gives."""
-        taken = inspect.getfullargspec(inspect.unwrap(self.describe))
-        names = [*taken.args, *taken.kwonlyargs]
+        """Raise Exception unless `parametrize` matches the arguments of `generate_test_description`."""
+        spec = inspect.getfullargspec(inspect.unwrap(self.generate))
+        names = [*spec.args, *spec.kwonlyargs]
         for name in self.parameters:
             if name not in names:
                 raise Exception(
@@ -88,14 +88,21 @@ class TestRun:
 
 
 def load_tests(module: ModuleType, name: str) -> list[TestRun]:
-    """Return the launches of a module with their tests."""
+    """Return the launches of a module, with their tests."""
     function = module.generate_test_description
     launches = list(function()) if getattr(function, "__parametrized__", False) else [(function, {})]
     runs = []
-    for describe, parameters in launches:
-        given: dict[str, Any] = {}
-        suites = [_Loader(after, given, _suffix(parameters)).loadTestsFromModule(module) for after in (False, True)]
-        runs.append(TestRun(name, describe, parameters, beside=suites[0], after=suites[1], given=given))
+    for generate, parameters in launches:
+        arguments: dict[str, Any] = {}
+        suites = [
+            _Loader(is_post_shutdown, arguments, _suffix(parameters)).loadTestsFromModule(module)
+            for is_post_shutdown in (False, True)
+        ]
+        runs.append(
+            TestRun(
+                name, generate, parameters, active_tests=suites[0], post_shutdown_tests=suites[1], arguments=arguments
+            )
+        )
     return runs
 
 
@@ -116,53 +123,53 @@ def _ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[Read
         if isinstance(entity, ReadyToTest):
             yield entity
         yield from _ready_actions(entity.describe_sub_entities())
-        for _, possible in entity.describe_conditional_sub_entities():
-            yield from _ready_actions(possible)
+        for _, sub_entities in entity.describe_conditional_sub_entities():
+            yield from _ready_actions(sub_entities)
 
 
 class _Suite(unittest.TestSuite):
-    """Keeps its tests after they ran: reports name them."""
+    """Keeps its tests after they ran, because reports name them."""
 
     def _removeTestAtIndex(self, index: int) -> None:
         pass
 
 
 class _Loader(unittest.TestLoader):
-    """Loads the classes of tests beside the launch, or those after its end; their tests get the arguments they name."""
+    """Loads the test classes for the time during the launch, or after it; tests get the arguments that they have."""
 
     suiteClass = _Suite
 
-    def __init__(self, after: bool, given: Mapping[str, Any], suffix: str) -> None:
+    def __init__(self, is_post_shutdown: bool, arguments: Mapping[str, Any], suffix: str) -> None:
         super().__init__()
-        self._after = after
-        self._given = given
+        self._is_post_shutdown = is_post_shutdown
+        self._arguments = arguments
         self._suffix = suffix
 
     def loadTestsFromTestCase(self, testCaseClass: type[unittest.TestCase]) -> unittest.TestSuite:
-        if getattr(testCaseClass, "__post_shutdown_test__", False) != self._after:
+        if getattr(testCaseClass, "__post_shutdown_test__", False) != self._is_post_shutdown:
             return self.suiteClass()
         names = self.getTestCaseNames(testCaseClass)
         methods: dict[str, Any] = {
-            name + self._suffix: _given_to(getattr(testCaseClass, name), self._given) for name in names
+            name + self._suffix: _with_arguments(getattr(testCaseClass, name), self._arguments) for name in names
         }
         for name in ("setUp", "tearDown"):
-            methods[name] = _given_to(getattr(testCaseClass, name), self._given)
+            methods[name] = _with_arguments(getattr(testCaseClass, name), self._arguments)
         for name in ("setUpClass", "tearDownClass"):
             function = inspect.getattr_static(testCaseClass, name).__func__
-            methods[name] = classmethod(_given_to(function, self._given))
-        kind = type(testCaseClass.__name__, (testCaseClass,), {"__module__": testCaseClass.__module__, **methods})
-        return self.suiteClass([kind(name + self._suffix) for name in names])
+            methods[name] = classmethod(_with_arguments(function, self._arguments))
+        test_class = type(testCaseClass.__name__, (testCaseClass,), {"__module__": testCaseClass.__module__, **methods})
+        return self.suiteClass([test_class(name + self._suffix) for name in names])
 
 
-def _given_to(function: Callable[..., Any], given: Mapping[str, Any]) -> Callable[..., Any]:
-    """Return a method that calls another one with those of `given` that it has arguments for."""
-    wanted = inspect.signature(function).parameters
+def _with_arguments(function: Callable[..., Any], arguments: Mapping[str, Any]) -> Callable[..., Any]:
+    """Return a method that calls `function` with those of `arguments` that it has parameters for."""
+    parameters = inspect.signature(function).parameters
 
     def call(self: Any) -> Any:
-        return function(self, **{name: value for name, value in given.items() if name in wanted})
+        return function(self, **{name: value for name, value in arguments.items() if name in parameters})
 
     call.__doc__ = function.__doc__
     return call
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

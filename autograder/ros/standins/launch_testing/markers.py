@@ -1,4 +1,4 @@
-"""What a test file says of its launch description and of its test cases, as decorators."""
+"""Decorators for the ``generate_test_description`` and the test cases of a test file."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 __all__ = ["keep_alive", "parametrize", "post_shutdown_test", "ready_to_test_action_timeout", "retry_on_failure"]
 
@@ -17,13 +17,13 @@ Class = TypeVar("Class", bound=type)
 
 
 def keep_alive(test_description: Function) -> Function:
-    """Let the launch go on when nothing is left to do in it, until the tests have ended."""
+    """Let the launch continue when nothing is left to do, until the tests have ended."""
     vars(test_description).setdefault("__markers__", {})["keep_alive"] = True
     return test_description
 
 
 def ready_to_test_action_timeout(timeout: float) -> Callable[[Function], Function]:
-    """Wait this many seconds, instead of 15, until the tests may begin."""
+    """Wait up to `timeout` seconds, instead of 15, until the tests may start."""
 
     def decorate(function: Function) -> Function:
         function.__ready_to_test_action_timeout__ = timeout  # type: ignore[attr-defined]
@@ -33,7 +33,7 @@ def ready_to_test_action_timeout(timeout: float) -> Callable[[Function], Functio
 
 
 def post_shutdown_test() -> Callable[[Class], Class]:
-    """Run the tests of a class after the end of the launch; TypeError for anything but a class."""
+    """Run the tests of a class after the end of the launch; raise TypeError unless it is a class."""
 
     def decorate(test_case: Class) -> Class:
         if not isinstance(test_case, type):
@@ -45,30 +45,30 @@ def post_shutdown_test() -> Callable[[Class], Class]:
 
 
 def parametrize(argnames: str, argvalues: Sequence[Any]) -> Callable[[Callable[..., Any]], Callable[[], Any]]:
-    """Launch, and test, once for each of the values.
+    """Launch and test once for each of the values.
 
     Args:
         argnames: the names of the arguments of ``generate_test_description``, separated by commas.
-        argvalues: a tuple of values for each launch; a value alone stands for a tuple of it.
+        argvalues: a tuple of values for each launch; a single value is used as a tuple of it.
     """
     names = [name.strip() for name in argnames.split(",") if name.strip()]
     rows = [row if isinstance(row, tuple) else (row,) for row in argvalues]
 
     def decorate(function: Callable[..., Any]) -> Callable[[], Any]:
         @functools.wraps(function)
-        def each() -> Iterator[tuple[Callable[..., Any], dict[str, Any]]]:
+        def launches() -> Iterator[tuple[Callable[..., Any], dict[str, Any]]]:
             for row in rows:
                 arguments = dict(zip(names, row, strict=False))
                 yield functools.update_wrapper(functools.partial(function, **arguments), function), arguments
 
-        each.__parametrized__ = True  # type: ignore[attr-defined]
-        return each
+        launches.__parametrized__ = True  # type: ignore[attr-defined]
+        return launches
 
     return decorate
 
 
 def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[Function], Function]:
-    """Try a test up to `times` times, with `delay` seconds between, as long as an assertion fails."""
+    """Repeat a test whose assertion fails up to `times` times, with `delay` seconds between."""
     assert times > 0
 
     def decorate(test: Function) -> Function:
@@ -89,4 +89,4 @@ def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[Fun
     return decorate
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

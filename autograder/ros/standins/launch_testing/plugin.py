@@ -1,4 +1,4 @@
-"""The pytest plugin: a file whose `generate_test_description` is marked ``launch_test`` is one test."""
+"""The pytest plugin, for which a file whose `generate_test_description` is marked ``launch_test`` is one test."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ENTRY = "generate_test_description"
 
 
 class LaunchTestFailure(Exception):
-    """Tests of a launch have failed: their names with what is told of each."""
+    """The failed tests of a launch, with the text of each failure."""
 
     def __init__(self, failed: list[tuple[str, str]]) -> None:
         super().__init__("some test cases have failed")
@@ -22,16 +22,16 @@ class LaunchTestFailure(Exception):
 
 
 class LaunchTestFailureRepr(TerminalRepr):
-    """What pytest prints of such a failure."""
+    """The text that pytest prints for such a failure."""
 
     def __init__(self, failed: list[tuple[str, str]]) -> None:
-        width = max(len(line) for _, told in failed for line in told.splitlines())
-        thick, thin = "=" * width, "-" * width
-        self._text = "\n" + "\n\n".join(f"{thick}\nFAIL: {name}\n{thin}\n{told}" for name, told in failed)
+        width = max(len(line) for _, text in failed for line in text.splitlines())
+        double_line, single_line = "=" * width, "-" * width
+        self._text = "\n" + "\n\n".join(f"{double_line}\nFAIL: {name}\n{single_line}\n{text}" for name, text in failed)
         self.reprcrash = ReprFileLocation("", 0, "\n".join(f"{name} failed" for name, _ in failed))
 
     def toterminal(self, tw: TerminalWriter) -> None:
-        """Print it."""
+        """Print the text."""
         tw.write(self._text)
 
 
@@ -43,7 +43,7 @@ class LaunchTestItem(pytest.Item):
         self._module = module
 
     def runtest(self) -> None:
-        """Run it."""
+        """Run the tests of all launches."""
         from .loader import load_tests
         from .test_runner import run_all
 
@@ -62,13 +62,13 @@ class LaunchTestItem(pytest.Item):
             raise LaunchTestFailure(failed)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """Return what is printed of a failure."""
+        """Return the text of a failure."""
         if isinstance(excinfo.value, LaunchTestFailure):
             return LaunchTestFailureRepr(excinfo.value.failed)
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Return file, line and title."""
+        """Return the file, the line and the title."""
         return self.path, 0, f"launch tests: {self.name}"
 
 
@@ -76,7 +76,7 @@ class LaunchTestModule(pytest.File):
     """A file with a launch test."""
 
     def collect(self) -> list[LaunchTestItem]:
-        """Return its one item."""
+        """Return the only item of the file."""
         module = _import(self.path, self.config)
         return [LaunchTestItem.from_parent(self, name=module.__name__, module=module)]
 
@@ -84,8 +84,8 @@ class LaunchTestModule(pytest.File):
 def _import(path: Path, config: pytest.Config) -> ModuleType:
     from _pytest.pathlib import import_path
 
-    more: dict[str, Any] = {"consider_namespace_packages": False} if pytest.version_tuple >= (8, 1) else {}
-    return import_path(path, root=config.rootpath, **more)
+    options: dict[str, Any] = {"consider_namespace_packages": False} if pytest.version_tuple >= (8, 1) else {}
+    return import_path(path, root=config.rootpath, **options)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -94,14 +94,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the marker known."""
+    """Register the marker."""
     config.addinivalue_line("markers", f"launch_test: mark a {ENTRY} function as a launch test entrypoint")
 
 
 def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
     """Collect a launch test; leave every other file to pytest."""
     if ENTRY not in module_path.read_text(encoding="utf-8", errors="replace"):
-        return None  # it is not imported in vain
+        return None  # avoids importing the file
     try:
         module = _import(module_path, parent.config)
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""The starts and ends of the processes of a launch, and waiting for them."""
+"""The starts and exits of the processes of a launch."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from launch.actions import ExecuteLocal
 from launch.events.process import ProcessExited, RunningProcessEvent
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .util import NoMatchingProcessException, resolveProcesses
 
@@ -16,7 +16,7 @@ __all__ = ["ActiveProcInfoHandler", "ProcInfoHandler"]
 
 
 class ProcInfoHandler:
-    """Holds the last of the events ProcessStarted and ProcessExited of each process. Iterating gives these events."""
+    """Records the newest event, ProcessStarted or ProcessExited, of each process; iterating over it yields these."""
 
     def __init__(self) -> None:
         self._events: dict[ExecuteLocal, RunningProcessEvent] = {}
@@ -29,7 +29,7 @@ class ProcInfoHandler:
         return iter(self._events.values())
 
     def __getitem__(self, key: ExecuteLocal | str) -> RunningProcessEvent:
-        """Return the last event of a process, by its action or a part of its name; KeyError if there is none."""
+        """Return the newest event of a process, by its action or a part of its name; raise KeyError without one."""
         if not isinstance(key, str):
             return self._events[key]
         for event in self._events.values():
@@ -47,7 +47,7 @@ class ProcInfoHandler:
 
 
 class ActiveProcInfoHandler:
-    """Holds the events of processes that still run, and lets tests in another thread wait for them."""
+    """Records the events of running processes, so that tests in another thread can wait for them."""
 
     def __init__(self) -> None:
         self._proc_info_handler = ProcInfoHandler()
@@ -55,7 +55,7 @@ class ActiveProcInfoHandler:
 
     @property
     def proc_event(self) -> threading.Condition:
-        """Notified of all events."""
+        """A condition that is notified of all events."""
         return self._changed
 
     def append(self, process_info: RunningProcessEvent) -> None:
@@ -84,26 +84,28 @@ class ActiveProcInfoHandler:
 
     def assertWaitForShutdown(self, process: ExecuteLocal | str, cmd_args: Any = None, *, timeout: float = 10) -> None:
         """Fail unless the process ends within `timeout` seconds."""
-        came = self._wait(process, cmd_args, timeout, lambda event: isinstance(event, ProcessExited))
-        assert came, f"Timed out waiting for process '{process}' to finish"
+        happened = self._wait(process, cmd_args, timeout, lambda event: isinstance(event, ProcessExited))
+        assert happened, f"Timed out waiting for process '{process}' to finish"
 
     def assertWaitForStartup(self, process: ExecuteLocal | str, cmd_args: Any = None, *, timeout: float = 10) -> None:
         """Fail unless the process starts within `timeout` seconds."""
-        came = self._wait(process, cmd_args, timeout, lambda event: True)
-        assert came, f"Timed out waiting for process '{process}' to start"
+        happened = self._wait(process, cmd_args, timeout, lambda event: True)
+        assert happened, f"Timed out waiting for process '{process}' to start"
 
-    def _wait(self, process: Any, cmd_args: Any, timeout: float, suits: Callable[[RunningProcessEvent], bool]) -> bool:
-        recorded = self._proc_info_handler
+    def _wait(
+        self, process: Any, cmd_args: Any, timeout: float, is_expected: Callable[[RunningProcessEvent], bool]
+    ) -> bool:
+        handler = self._proc_info_handler
 
-        def came() -> bool:
+        def happened() -> bool:
             try:
-                found = resolveProcesses(recorded, process=process, cmd_args=cmd_args)
+                actions = resolveProcesses(handler, process=process, cmd_args=cmd_args)
             except NoMatchingProcessException:
                 return False
-            return suits(recorded[found[0]])
+            return is_expected(handler[actions[0]])
 
         with self._changed:
-            return self._changed.wait_for(came, timeout)
+            return self._changed.wait_for(happened, timeout)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

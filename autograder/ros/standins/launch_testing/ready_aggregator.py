@@ -1,4 +1,4 @@
-"""Calls a function at the n-th request."""
+"""A callable that calls a function after a number of calls."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ class ReadyAggregator:
     """Calls `ready_fn` when its own `ready_fn` has been called `num_to_aggregate` times; from any thread."""
 
     def __init__(self, ready_fn: Callable[[], object], num_to_aggregate: int) -> None:
-        self._call = ready_fn
-        self._left = num_to_aggregate
+        self._callback = ready_fn
+        self._remaining = num_to_aggregate
         self._lock = threading.Lock()
 
     def ready_fn(self) -> None:
         """Count one call."""
         with self._lock:
-            self._left -= 1
-            last = self._left == 0
-        if last:
-            self._call()
+            self._remaining -= 1
+            is_last = self._remaining == 0
+        if is_last:
+            self._callback()

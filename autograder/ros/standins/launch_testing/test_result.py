@@ -1,10 +1,10 @@
-"""The results of one launch's tests."""
+"""The results of the tests of one launch."""
 
 from __future__ import annotations
 
 import unittest
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .loader import TestRun
 
@@ -17,17 +17,17 @@ class TestResult(unittest.TextTestResult):
     def append(self, other: TestResult) -> None:
         """Add the results of further tests."""
         self.testsRun += other.testsRun
-        for kept, added in (
+        for results, other_results in (
             (self.failures, other.failures),
             (self.errors, other.errors),
             (self.skipped, other.skipped),
             (self.expectedFailures, other.expectedFailures),
             (self.unexpectedSuccesses, other.unexpectedSuccesses),
         ):
-            kept.extend(added)  # type: ignore[arg-type]
+            results.extend(other_results)  # type: ignore[arg-type]
 
 
-def died(run: TestRun) -> unittest.TestResult:
+def failed_result(run: TestRun) -> unittest.TestResult:
     """Return the results of a launch that ended before its tests did."""
     result = unittest.TestResult()
     error = Exception("Launch stopped before the active tests finished.")
@@ -37,8 +37,8 @@ def died(run: TestRun) -> unittest.TestResult:
     return result
 
 
-def skipped(run: TestRun, reason: str) -> unittest.TestResult:
-    """Return the results of a launch that is not made."""
+def skipped_result(run: TestRun, reason: str) -> unittest.TestResult:
+    """Return the results of a launch that is skipped."""
     result = unittest.TestResult()
     for case in run.cases:
         result.addSkip(case, reason)
@@ -46,4 +46,4 @@ def skipped(run: TestRun, reason: str) -> unittest.TestResult:
     return result
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

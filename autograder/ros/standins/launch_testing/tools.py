@@ -1,7 +1,7 @@
-"""Starting single processes in tests: not covered."""
+"""Tools that start single processes in tests, which are not covered."""
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

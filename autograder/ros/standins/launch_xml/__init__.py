@@ -1,9 +1,9 @@
-"""Stand-in for `launch_xml`, which cannot be installed by pip: XML launch files; see the stand-in for `launch`."""
+"""Stand-in for `launch_xml`, which cannot be installed by pip: XML launch files. See the stand-in for `launch`."""
 
 from __future__ import annotations
 
-from standin_notice import guard
-from standin_submodules import offer_submodules
+from standin_notice import make_getattr
+from standin_submodules import install_submodule_finder
 
 from . import launch_description_sources
 from .entity import Entity
@@ -11,6 +11,6 @@ from .parser import Parser
 
 __all__ = ["Entity", "Parser", "launch_description_sources"]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)
 
-offer_submodules()
+install_submodule_finder()

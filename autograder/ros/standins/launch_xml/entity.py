@@ -26,12 +26,12 @@ class Entity(frontend.Entity):
 
     @property
     def parent(self) -> Entity | None:
-        """The element in which this one is."""
+        """The element that contains this one."""
         return self._parent
 
     @property
     def children(self) -> list[frontend.Entity]:
-        """The elements in this one."""
+        """The elements that this one contains."""
         self._read_children = {child.tag for child in self._element}
         return [Entity(child, parent=self) for child in self._element]
 
@@ -45,9 +45,9 @@ class Entity(frontend.Entity):
             raise ValueError(f"Unexpected attribute(s) found in `{self.type_name}`: {attributes}")
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """Return an attribute, whose text is read as `data_type`; see `launch.frontend.Entity`.
+        """Return an attribute, whose text is converted to `data_type`; see `launch.frontend.Entity`.
 
-        An attribute ``name-sep`` makes a list of the text: it says what stands between the items.
+        An attribute ``name-sep`` is the separator of the items of a list.
         """
         if check_is_list_entity(data_type):
             children = [Entity(child, parent=self) for child in self._element if child.tag == name]
@@ -55,12 +55,12 @@ class Entity(frontend.Entity):
                 self._read_children.add(name)
                 return children
         elif name in self._element.attrib:
-            return self._typed(name, data_type, can_be_str)
+            return self._convert_attribute(name, data_type, can_be_str)
         if optional:
             return None
         raise AttributeError(f"Attribute '{name}' of type '{data_type}' not found in Entity '{self.type_name}'")
 
-    def _typed(self, name: str, data_type: Any, can_be_str: bool) -> Any:
+    def _convert_attribute(self, name: str, data_type: Any, can_be_str: bool) -> Any:
         value: Any = self._element.attrib[name]
         self._read_attributes.add(name)
         separator = f"{name}-sep"

@@ -16,10 +16,10 @@ class Parser(frontend.Parser):
 
     @classmethod
     def load(cls, file: str | os.PathLike[str] | TextIO) -> tuple[Entity, Parser]:
-        """Return the root element of an XML file and a parser; ElementTree.ParseError if it is not XML."""
+        """Return the root element of an XML file and a parser; raise ElementTree.ParseError if it is not XML."""
         return Entity(ElementTree.parse(file).getroot()), cls()
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the endings of XML launch files."""
+        """Return the file extensions of XML launch files."""
         return {"launch.xml", "xml", "launch"}

@@ -10,13 +10,13 @@ from launch.utilities.type_utils import is_instance_of
 
 
 class Entity(frontend.Entity):
-    """A dictionary of attributes, or the list of the elements in it."""
+    """A dictionary of attributes, or a list of elements."""
 
     def __init__(self, element: Any, type_name: str, *, parent: Entity | None = None) -> None:
         self._element = element
         self._type_name = type_name
         self._parent = parent
-        self._read: set[str] = set()
+        self._read_names: set[str] = set()
         self._children_read = False
 
     @property
@@ -26,14 +26,14 @@ class Entity(frontend.Entity):
 
     @property
     def parent(self) -> Entity | None:
-        """The element in which this one is."""
+        """The element that contains this one."""
         return self._parent
 
     @property
     def children(self) -> list[frontend.Entity]:
-        """The elements in this one: the items of the list, or of the attribute ``children``.
+        """The elements that this one contains: the items of the list, or of the attribute ``children``.
 
-        Raises TypeError or ValueError if there are none, RuntimeError for a child with several types.
+        Raises TypeError or ValueError without children, and RuntimeError for a child with several types.
         """
         self._children_read = True
         children = self._element
@@ -43,7 +43,7 @@ class Entity(frontend.Entity):
                     f"Expected entity `{self._type_name}` to have children entities. That can be a list of subentities "
                     "or a dictionary with a `children` list element"
                 )
-            self._read.add("children")
+            self._read_names.add("children")
             children = children["children"]
         if not isinstance(children, list):
             raise TypeError(f"Expected a dict or list, got {type(children)}:\n---\n{children}\n---")
@@ -57,7 +57,7 @@ class Entity(frontend.Entity):
             if not self._children_read:
                 raise ValueError(f"Unexpected nested entity(ies) found in `{self._type_name}`: {self._element}")
             return
-        unread = set(self._element) - self._read
+        unread = set(self._element) - self._read_names
         if unread:
             raise ValueError(f"Unexpected key(s) found in `{self._type_name}`: {unread}")
 
@@ -67,13 +67,13 @@ class Entity(frontend.Entity):
             if optional:
                 return None
             raise AttributeError(f"Can not find attribute '{name}' in Entity '{self.type_name}'")
-        self._read.add(name)
+        self._read_names.add(name)
         value = self._element[name]
-        where = f"Attribute '{name}' of Entity '{self.type_name}' expected to be"
+        expectation = f"Attribute '{name}' of Entity '{self.type_name}' expected to be"
         if check_is_list_entity(data_type):
             if isinstance(value, list) and value and isinstance(value[0], dict):
                 return [Entity(child, name, parent=self) for child in value]
-            raise TypeError(f"{where} a list of dictionaries.")
+            raise TypeError(f"{expectation} a list of dictionaries.")
         if not is_instance_of(value, data_type, can_be_str=can_be_str):
-            raise TypeError(f"{where} of type '{data_type}', got '{type(value)}'")
+            raise TypeError(f"{expectation} of type '{data_type}', got '{type(value)}'")
         return value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from launch import SomeSubstitutionsType
 from launch.launch_description_sources import FrontendLaunchDescriptionSource
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .parser import Parser
 
@@ -18,4 +18,4 @@ class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
         super().__init__(launch_file_path, method="interpreted YAML launch file", parser=Parser)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

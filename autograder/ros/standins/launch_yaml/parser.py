@@ -19,12 +19,12 @@ class Parser(frontend.Parser):
     def load(cls, file: str | os.PathLike[str] | TextIO) -> tuple[Entity, Parser]:
         """Return the root element of a YAML file and a parser.
 
-        Raises yaml.YAMLError if it is not YAML, RuntimeError unless it has one root.
+        Raises yaml.YAMLError if it is not YAML, and RuntimeError unless it has one root.
         """
         if isinstance(file, (str, os.PathLike)):
             with Path(file).open(encoding="utf-8") as opened:
                 return cls.load(opened)
-        tree = yaml.safe_load(file)  # the file, and not its text, so that errors name it
+        tree = yaml.safe_load(file)  # passes the file instead of its text, so that errors name it
         if not isinstance(tree, dict) or len(tree) != 1:
             raise RuntimeError("Expected only one root")
         ((type_name, element),) = tree.items()
@@ -32,5 +32,5 @@ class Parser(frontend.Parser):
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the endings of YAML launch files."""
+        """Return the file extensions of YAML launch files."""
         return {"launch.yaml", "launch.yml", "yaml", "yml", "launch"}

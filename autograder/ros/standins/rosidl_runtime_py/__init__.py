@@ -1,11 +1,11 @@
 """A stand-in for `rosidl_runtime_py`, which has no wheel: ROS messages to and from dictionaries, YAML and CSV.
 
-It is found only where the real package is not importable, has its import names, and covers `convert`,
-`set_message`, `import_message`, `get_interfaces` and `utilities`. Get the real one with `make real-launch`, or by
-sourcing a ROS 2 Jazzy installation.
+It is imported only if the real package is not installed, by the same names. It covers `convert`, `set_message`,
+`import_message`, `get_interfaces` and `utilities`. For the real package run `make real-launch`, or source an
+installation of ROS 2 Jazzy.
 """
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .convert import get_message_slot_types, message_to_csv, message_to_ordereddict, message_to_yaml
 from .get_interfaces import (
@@ -36,4 +36,4 @@ __all__ = [
     "set_message_fields",
 ]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

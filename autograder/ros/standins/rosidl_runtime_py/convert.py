@@ -1,4 +1,4 @@
-"""ROS messages to dictionaries, YAML and comma-separated values (stand-in for `rosidl_runtime_py.convert`)."""
+"""Conversion of ROS messages to dictionaries, YAML and CSV (stand-in for `rosidl_runtime_py.convert`)."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ def message_to_ordereddict(
 
     Args:
         msg: any ROS message.
-        truncate_length: cut strings and arrays after so many elements and mark the cut with `...`.
-        no_arr: put a summary in the place of each array.
-        no_str: put a summary in the place of each string.
+        truncate_length: the maximum length of strings and arrays; longer ones are cut, and end with `...`.
+        no_arr: whether to replace each array by a summary.
+        no_str: whether to replace each string by a summary.
     """
     return OrderedDict(
-        (name, _plain(getattr(msg, name), slot, truncate_length, no_arr, no_str))
+        (name, _to_plain(getattr(msg, name), slot, truncate_length, no_arr, no_str))
         for name, slot in get_message_slot_types(msg).items()
     )
 
@@ -86,21 +86,21 @@ def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool
     Values are not quoted, as in the real function: a string with a comma in it looks like two values.
     """
     return ",".join(
-        _csv(getattr(msg, name), slot, truncate_length, no_arr, no_str)
+        _to_csv(getattr(msg, name), slot, truncate_length, no_arr, no_str)
         for name, slot in get_message_slot_types(msg).items()
     )
 
 
-def _plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> Any:
+def _to_plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> Any:
     if isinstance(value, bytes):
-        return _cut(value.decode("latin-1"), limit)
+        return _truncate(value.decode("latin-1"), limit)
     if isinstance(value, str):
-        return _string_summary(value) if no_str else _cut(value, limit)
+        return _string_summary(value) if no_str else _truncate(value, limit)
     if isinstance(value, _SEQUENCES):
         if no_arr and slot is not None:
             return _array_summary(value, slot)
-        shown = [_plain(item, None, limit, no_arr, no_str) for item in value[:limit]]
-        return [*shown, _ELLIPSIS] if limit is not None and len(value) > limit else shown
+        items = [_to_plain(item, None, limit, no_arr, no_str) for item in value[:limit]]
+        return [*items, _ELLIPSIS] if limit is not None and len(value) > limit else items
     if isinstance(value, np.number):
         return value.item()
     if isinstance(value, (bool, int, float)):
@@ -108,22 +108,22 @@ def _plain(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool)
     return message_to_ordereddict(value, truncate_length=limit, no_arr=no_arr, no_str=no_str)
 
 
-def _csv(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> str:
+def _to_csv(value: Any, slot: Any, limit: int | None, no_arr: bool, no_str: bool) -> str:
     if isinstance(value, _SEQUENCES):
         if no_arr and slot is not None:
             return _array_summary(value, slot)
-        shown = [_csv(item, None, limit, no_arr, no_str) for item in value[:limit]]
-        return ",".join([*shown, _ELLIPSIS] if limit is not None and len(value) > limit else shown)
+        items = [_to_csv(item, None, limit, no_arr, no_str) for item in value[:limit]]
+        return ",".join([*items, _ELLIPSIS] if limit is not None and len(value) > limit else items)
     if isinstance(value, bytes):
         return str(value if limit is None or len(value) <= limit else value[:limit] + b"...")
     if isinstance(value, str):
-        return _string_summary(value) if no_str else _cut(value, limit)
+        return _string_summary(value) if no_str else _truncate(value, limit)
     if isinstance(value, (bool, int, float, np.number)):
         return str(value)
     return message_to_csv(value, truncate_length=limit, no_arr=no_arr, no_str=no_str)
 
 
-def _cut(text: str, limit: int | None) -> str:
+def _truncate(text: str, limit: int | None) -> str:
     return text if limit is None or len(text) <= limit else text[:limit] + _ELLIPSIS
 
 

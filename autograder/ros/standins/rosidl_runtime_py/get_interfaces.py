@@ -1,4 +1,4 @@
-"""Which interfaces are installed, by the ament index (stand-in for `rosidl_runtime_py.get_interfaces`)."""
+"""The installed interfaces, from the ament index (stand-in for `rosidl_runtime_py.get_interfaces`)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _KINDS = ("msg", "srv", "action")
 
 
 def get_all_interface_packages() -> dict[str, str]:
-    """Return each package that has interfaces, and the prefix that it is installed in."""
+    """Return each package that has interfaces, and the prefix in which it is installed."""
     return dict(get_resources(_RESOURCE))
 
 
@@ -28,22 +28,22 @@ def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
             raise LookupError(f"Unknown package '{name}'")
         if not has_resource(_RESOURCE, name):
             raise LookupError(f"Package '{name}' has no interfaces")
-    return {name: _listed(name) for name in names}
+    return {name: _interfaces_in(name) for name in names}
 
 
 def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the messages of the given packages; arguments and errors are those of `get_interfaces`."""
-    return _of_kind("msg", package_names)
+    return _interfaces_of_kind("msg", package_names)
 
 
 def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the services of the given packages; arguments and errors are those of `get_interfaces`."""
-    return _of_kind("srv", package_names)
+    return _interfaces_of_kind("srv", package_names)
 
 
 def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the actions of the given packages; arguments and errors are those of `get_interfaces`."""
-    return _of_kind("action", package_names)
+    return _interfaces_of_kind("action", package_names)
 
 
 def get_interface_packages() -> dict[str, str]:
@@ -55,7 +55,7 @@ def get_interface_path(interface_name: str) -> str:
     """Return the path of the `.msg`, `.srv` or `.action` file of `package/kind/Name`.
 
     Raises:
-        ValueError: the name has not the form `package/Name` or `package/kind/Name`.
+        ValueError: the name does not have the form `package/Name` or `package/kind/Name`.
         LookupError: the package or the interface is not installed.
     """
     parts = interface_name.split("/")
@@ -69,8 +69,8 @@ def get_interface_path(interface_name: str) -> str:
         share = Path(get_package_share_directory(parts[0]))
     except LookupError:
         raise LookupError(f"Unknown package '{parts[0]}'") from None
-    inner = parts[1:]
-    folders = [inner] if len(inner) > 1 else [[kind, *inner] for kind in _KINDS]
+    relative_parts = parts[1:]
+    folders = [relative_parts] if len(relative_parts) > 1 else [[kind, *relative_parts] for kind in _KINDS]
     for folder in folders:
         path = share.joinpath(*folder)
         candidates = [path] if path.suffix else [path.with_suffix(f".{folder[0]}"), path.with_suffix(".idl")]
@@ -80,17 +80,17 @@ def get_interface_path(interface_name: str) -> str:
     raise LookupError(f"Could not find the interface '{share.joinpath(*folders[0]).with_suffix('.idl')}'")
 
 
-def _of_kind(kind: str, package_names: Iterable[str]) -> dict[str, list[str]]:
-    chosen = {
+def _interfaces_of_kind(kind: str, package_names: Iterable[str]) -> dict[str, list[str]]:
+    interfaces = {
         package: [name for name in names if name.startswith(f"{kind}/")]
         for package, names in get_interfaces(package_names).items()
     }
-    return {package: names for package, names in chosen.items() if names}
+    return {package: names for package, names in interfaces.items() if names}
 
 
-def _listed(package: str) -> list[str]:
+def _interfaces_in(package: str) -> list[str]:
     content, _ = get_resource(_RESOURCE, package)
-    # Each interface is listed twice, as written (.msg) and as generated (.idl); an .idl may stand alone.
+    # Most interfaces are listed twice, as source (.msg) and as generated .idl, and some only as .idl.
     return sorted(
         {line.rsplit(".", 1)[0] for line in content.splitlines() if line.rpartition(".")[2] in {*_KINDS, "idl"}}
     )

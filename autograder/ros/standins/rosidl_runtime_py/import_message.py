@@ -1,4 +1,4 @@
-"""From a parsed type to its Python class (stand-in for `rosidl_runtime_py.import_message`)."""
+"""Import of the Python class of a parsed type (stand-in for `rosidl_runtime_py.import_message`)."""
 
 from __future__ import annotations
 

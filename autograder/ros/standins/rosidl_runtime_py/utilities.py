@@ -1,4 +1,4 @@
-"""From an interface's name to its Python class (stand-in for `rosidl_runtime_py.utilities`)."""
+"""Import of an interface's Python class by its name (stand-in for `rosidl_runtime_py.utilities`)."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import importlib
 from typing import Any
 
 from rosidl_parser.definition import NamespacedType
-from standin_notice import guard
+from standin_notice import make_getattr
 
 
 def get_interface(identifier: str) -> Any:
     """Import the class of a message, service or action named `package/kind/Name`.
 
     Raises:
-        ValueError: the name has not three parts.
+        ValueError: the name does not have three parts.
         ModuleNotFoundError: there is no such package, or it has no interface of this kind.
         AttributeError: the package has no interface of this name.
     """
@@ -43,7 +43,7 @@ def get_message_namespaced_type(identifier: str) -> NamespacedType:
 
 
 def _split(identifier: str, kind: str | None) -> tuple[str, str, str]:
-    """Split a name in three; a name in two parts gets `kind`."""
+    """Split a name into three parts; `kind` is inserted into a name of two parts."""
     parts = identifier.split("/")
     if kind is not None and len(parts) == 2:
         parts.insert(1, kind)
@@ -57,4 +57,4 @@ def _load(package: str, kind: str, name: str) -> Any:
     return getattr(importlib.import_module(f"{package}.{kind}"), name)
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -2,6 +2,6 @@
 
     python lockstep_host READ_FD WRITE_FD START_NS CLOCK_RATE EXECUTABLE [ARGUMENTS...]
 
-It runs in the student's own process, so the grader trusts nothing that it says (see `protocol.py`). It imports nothing
-of the grader: this folder is all of the grader's code that the sandbox shows.
+It runs in the student's own process, so the grader does not trust its messages (see `protocol.py`). It imports no
+modules from other folders of the grader, because only this folder is visible in the sandbox.
 """

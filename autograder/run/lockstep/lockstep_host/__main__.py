@@ -1,4 +1,4 @@
-"""Run the program that the command line names, in lockstep."""
+"""Runs the program on the command line in lockstep."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import sys
 import traceback
 from pathlib import Path
 
-TEXT = 8000  # characters of an exception's texts that are reported
+MAX_TEXT = 8000  # characters of each text of an exception that are reported
 
 
 def main() -> None:
-    """Run the program."""
-    here = Path(__file__).resolve().parent
-    sys.path.insert(0, str(here.parent))
-    module = importlib.import_module(f"{here.name}.host")
+    """Install the host, run the program, and report an exception that ends it."""
+    folder = Path(__file__).resolve().parent
+    sys.path.insert(0, str(folder.parent))
+    module = importlib.import_module(f"{folder.name}.host")
     read_fd, write_fd, start_ns = map(int, sys.argv[1:4])
     clock_rate, program = float(sys.argv[4]), sys.argv[5]
     sys.argv = sys.argv[5:]
-    sys.path[:2] = [str(Path(program).parent)]  # as Python sets it for a program that is started by its path
+    sys.path[:2] = [str(Path(program).parent)]  # as if Python had been started with the path of the program
     host = module.Host(module.Pipes(read_fd, write_fd), start_ns, clock_rate)
     host.install()
     try:
@@ -29,8 +29,8 @@ def main() -> None:
             event="crash",
             phase=host.phase,
             type=type(error).__name__,
-            message=str(error)[-TEXT:],
-            traceback="".join(traceback.format_exception(error))[-TEXT:],
+            message=str(error)[-MAX_TEXT:],
+            traceback="".join(traceback.format_exception(error))[-MAX_TEXT:],
         )
         raise
 

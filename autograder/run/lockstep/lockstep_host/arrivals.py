@@ -1,7 +1,7 @@
-"""Arrivals: waiting in real time for messages that were announced and have not come yet.
+"""Waits in real time for announced messages that have not arrived yet.
 
-Callbacks run in the order of their creation once all messages are there. Otherwise they would run in the order in which
-messages happen to arrive.
+Once all messages have arrived, callbacks run in the order in which they were created. Without the wait, they would run
+in the order in which messages happen to arrive.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 
 from .message_counts import MessageCounts, Reader, belongs_to
 
-LOSS_SECONDS = 5.0  # s of real time without any progress, after which messages that were announced count as lost
-OVERFLOW_SECONDS = 0.3  # s of real time to wait for more messages than a queue holds, of which some are lost by design
+LOSS_SECONDS = 5.0  # s of real time without progress, after which announced messages count as lost
+OVERFLOW_SECONDS = 0.3  # the same if more messages were announced than the queue holds, because DDS drops some of them
 
-Behind = list[tuple[Reader, Any]]
+UnreadReaders = list[tuple[Reader, Any]]
 """Readers with unread messages, each with its entity."""
 
 
@@ -26,8 +26,8 @@ class Arrivals:
     """The waits for the unread messages of one `MessageCounts`.
 
     Attributes:
-        lost: channels on which messages that were announced did not come; whoever reports them starts a new list.
-        may_come_late: whether anything was ever lost, which a busy machine may still deliver.
+        lost: channels on which announced messages did not arrive. The host replaces the list when it has reported it.
+        may_come_late: whether messages count as lost. A busy machine may still deliver them.
     """
 
     def __init__(self, counts: MessageCounts) -> None:
@@ -36,48 +36,48 @@ class Arrivals:
         self._counts = counts
         self._progress = 0.0
 
-    def advance(self) -> None:
-        """Note that the program has advanced: what it waits for may have been sent only now."""
+    def record_progress(self) -> None:
+        """Record that the program has advanced. Perhaps it has only now sent the messages for which it waits."""
         self._progress = time.monotonic()
 
-    def wait(self, executor: Executor) -> Behind:
-        """Wait for the unread messages whose callbacks can run now in an executor; return their readers."""
-        behind = self._behind(executor)
-        for reader, entity in behind:
-            left = self._progress + _patience(reader) - time.monotonic()
-            wait_for(reader, entity, executor.context, left)
-        return behind
+    def wait(self, executor: Executor) -> UnreadReaders:
+        """Wait for the unread messages whose callbacks an executor can run now. Return their readers."""
+        unread_readers = self._unread_readers(executor)
+        for reader, entity in unread_readers:
+            remaining_seconds = self._progress + _max_wait(reader) - time.monotonic()
+            wait_for(reader, entity, executor.context, remaining_seconds)
+        return unread_readers
 
-    def drop_overdue(self, behind: Behind) -> None:
-        """Count as lost what was waited for long enough."""
-        waited = time.monotonic() - self._progress
-        lost = [reader for reader, _ in behind if waited > _patience(reader)]
+    def drop_overdue(self, unread_readers: UnreadReaders) -> None:
+        """Count messages as lost if they have not arrived in time."""
+        elapsed = time.monotonic() - self._progress
+        lost = [reader for reader, _ in unread_readers if elapsed > _max_wait(reader)]
         self.lost += [reader.channels[0] for reader in lost if not _overflows(reader)]
         self.may_come_late |= bool(lost)
         self._counts.drop(lost)
 
-    def _behind(self, executor: Executor) -> Behind:
+    def _unread_readers(self, executor: Executor) -> UnreadReaders:
         nodes = executor.get_nodes()
-        behind = []
-        for reader in list(self._counts.behind):
+        unread_readers = []
+        for reader in list(self._counts.unread_readers):
             entity = reader.entity
             if entity is None:
-                self._counts.behind.discard(reader)
+                self._counts.unread_readers.discard(reader)
             elif any(belongs_to(entity, node) for node in nodes) and executor.can_execute(entity):
-                behind.append((reader, entity))
-        return behind
+                unread_readers.append((reader, entity))
+        return unread_readers
 
 
 def _overflows(reader: Reader) -> bool:
     return 0 < reader.depth < reader.unread
 
 
-def _patience(reader: Reader) -> float:
+def _max_wait(reader: Reader) -> float:
     return OVERFLOW_SECONDS if _overflows(reader) else LOSS_SECONDS
 
 
 def wait_for(reader: Reader, entity: Any, context: Any, seconds: float) -> bool:
-    """Wait at most `seconds` of real time until a message has arrived for a reader; return whether one has."""
+    """Wait at most `seconds` of real time until a message has arrived for a reader. Return whether one has."""
     try:
         with entity.handle if hasattr(entity, "handle") else entity, context.handle:
             return _wait_for(reader, entity, context, int(max(0.0, seconds) * 1e9))

@@ -1,8 +1,8 @@
-"""Callback threads: callbacks that may block, of which one runs at a time.
+"""Runs callbacks that may block. Each has its own thread, but only one thread runs at a time.
 
-A callback may wait for what only another callback brings: `client.call()`, `rate.sleep()`, an event. In rclpy's
-MultiThreadedExecutor it may. Here each callback of such an executor has a thread as well, but one thread runs until it
-is done or waits, and then the next, in the same order every time.
+In rclpy's MultiThreadedExecutor, a callback may wait for another callback, for example in `client.call()` or in
+`rate.sleep()`. So each callback of such an executor also has a thread here. But a thread runs until it is done or
+waits, and then the next one runs, in an order that is always the same.
 """
 
 from __future__ import annotations
@@ -18,37 +18,37 @@ class Worker(threading.Thread):
     """The thread of a callback that has started.
 
     Attributes:
-        ready: whether what it waits for has come; None while it runs.
-        over: whether it is done.
+        ready: the condition for which it waits; None while it runs.
+        is_done: whether its callback has returned.
     """
 
-    def __init__(self, handler: Callable[[], Any], back: threading.Semaphore) -> None:
+    def __init__(self, handler: Callable[[], Any], main_turn: threading.Semaphore) -> None:
         super().__init__(daemon=True)
         self.ready: Condition | None = None
-        self.over = False
+        self.is_done = False
         self._handler = handler
         self._turn = threading.Semaphore(0)
-        self._back = back
+        self._main_turn = main_turn
 
     def run(self) -> None:
-        """Run the callback once `go_on` is called."""
+        """Run the callback once `proceed` is called."""
         self._turn.acquire()
         try:
             self._handler()
         finally:
-            self.over = True
-            self._back.release()
+            self.is_done = True
+            self._main_turn.release()
 
-    def go_on(self) -> None:
-        """Let it run until it is done or waits; called by the main thread."""
+    def proceed(self) -> None:
+        """Let it run until it is done or waits. Call this from the main thread."""
         self.ready = None
         self._turn.release()
-        self._back.acquire()
+        self._main_turn.acquire()
 
     def wait(self, ready: Condition) -> None:
-        """Wait for a condition and let other callbacks run; called by its own thread."""
+        """Wait for a condition and let other callbacks run. Call this from the worker's own thread."""
         self.ready = ready
-        self._back.release()
+        self._main_turn.release()
         self._turn.acquire()
 
 
@@ -57,32 +57,35 @@ class CallbackThreads:
 
     def __init__(self, size: int | None) -> None:
         self.size = size
-        self.waiting: list[tuple[Worker, Any]] = []  # with their rclpy tasks
-        self._back = threading.Semaphore(0)
+        self.waiting: list[tuple[Worker, Any]] = []  # the workers, with their rclpy tasks
+        self._main_turn = threading.Semaphore(0)
 
     @property
-    def full(self) -> bool:
-        """Whether there is no thread left for another callback."""
+    def is_full(self) -> bool:
+        """Whether all threads are used."""
         return self.size is not None and len(self.waiting) >= self.size
 
     def start(self, task: Any) -> None:
-        """Run a task until it is done or waits. Raises what it raised."""
-        worker = Worker(task, self._back)
+        """Run a task until it is done or waits. Raises the exceptions of the task."""
+        worker = Worker(task, self._main_turn)
         worker.start()
-        self._go_on(worker, task)
+        self._proceed(worker, task)
 
     def resume(self) -> bool:
-        """Let the first one run whose condition holds; return whether there was one. Raises what it raised."""
-        for number, (worker, task) in enumerate(self.waiting):
+        """Let the first worker whose condition is true run. Return whether there is such a worker.
+
+        Raises the exceptions of its task.
+        """
+        for index, (worker, task) in enumerate(self.waiting):
             if worker.ready is not None and worker.ready():
-                del self.waiting[number]
-                self._go_on(worker, task)
+                del self.waiting[index]
+                self._proceed(worker, task)
                 return True
         return False
 
-    def _go_on(self, worker: Worker, task: Any) -> None:
-        worker.go_on()
-        if not worker.over:
+    def _proceed(self, worker: Worker, task: Any) -> None:
+        worker.proceed()
+        if not worker.is_done:
             self.waiting.append((worker, task))
         elif task.done():
             task.result()

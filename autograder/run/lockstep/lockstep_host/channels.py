@@ -1,8 +1,9 @@
-"""Channels: names for what connects writers and readers, the same in the host and in the grader.
+"""Names for channels, which connect writers and readers. The host and the grader use the same names.
 
 DDS matches a writer with a reader when names and types are equal and the writer offers the quality of service that the
-reader requests. A channel's name holds all of that, so a count by channel is a count of what a reader will get. A
-response goes to one client only. Its channel names the client's process by the prefix that all its GUIDs share.
+reader requests. A channel's name contains all of these, so each of its readers will receive as many messages as are
+sent on it. A response is sent to only one client, so its channel contains the prefix of the GUIDs of the client's
+process.
 """
 
 from __future__ import annotations
@@ -12,10 +13,10 @@ from typing import Any
 
 RELIABLE, BEST_EFFORT = "reliable", "best-effort"
 TRANSIENT_LOCAL, VOLATILE = "transient_local", "volatile"
-OWN = "own"  # a placeholder for the prefix of the client's own process, which is not known at first
-PREFIX = 12  # bytes of a GUID that name the process
-_GUID = 16
-_VALUE = object.__basicsize__  # where a pybind11 object keeps the address of the C struct that it stands for
+OWN = "own"  # a placeholder for the prefix of the client's process until the prefix is known
+PREFIX = 12  # bytes of a GUID that identify the process
+_GUID = 16  # bytes of a GUID
+_VALUE = object.__basicsize__  # offset of the address of the C struct in a pybind11 object
 
 
 def type_name(kind: Any) -> str:
@@ -25,17 +26,19 @@ def type_name(kind: Any) -> str:
 
 
 def publisher_channel(topic: str, kind: Any, qos: Any) -> str:
-    """Return the channel of a publisher with a profile; the topic's name is resolved."""
+    """Return the channel of a publisher with a QoS profile. `topic` is the resolved name."""
     reliability = BEST_EFFORT if qos.reliability.name == "BEST_EFFORT" else RELIABLE
     durability = TRANSIENT_LOCAL if qos.durability.name == "TRANSIENT_LOCAL" else VOLATILE
     return _topic(topic, kind, reliability, durability)
 
 
 def subscription_channels(topic: str, kind: Any, qos: Any) -> tuple[str, ...]:
-    """Return the channels of a subscription with a profile: all that offer at least what its profile requests."""
+    """Return the channels of a subscription with a QoS profile: all that offer at least what the profile requests."""
     reliabilities = (RELIABLE,) if qos.reliability.name == "RELIABLE" else (RELIABLE, BEST_EFFORT)
     durabilities = (TRANSIENT_LOCAL,) if qos.durability.name == "TRANSIENT_LOCAL" else (TRANSIENT_LOCAL, VOLATILE)
-    return tuple(_topic(topic, kind, one, two) for one in reliabilities for two in durabilities)
+    return tuple(
+        _topic(topic, kind, reliability, durability) for reliability in reliabilities for durability in durabilities
+    )
 
 
 def topic_of(channel: str) -> str:
@@ -44,7 +47,7 @@ def topic_of(channel: str) -> str:
 
 
 def is_transient_local(channel: str) -> bool:
-    """Return whether late readers get what was written before they came."""
+    """Return whether late readers receive earlier messages."""
     return channel.endswith(f" {TRANSIENT_LOCAL}")
 
 
@@ -59,19 +62,19 @@ def is_topic(channel: str) -> bool:
 
 
 def response(service: str, kind: Any, prefix: str) -> str:
-    """Return the channel of a service's responses to one process, by the prefix of its GUIDs."""
+    """Return the channel of a service's responses to the process whose GUIDs have a prefix."""
     return f"{service} {type_name(kind)} response {prefix}"
 
 
 def with_process_prefix(names: tuple[str, ...], prefix: str) -> tuple[str, ...]:
-    """Return channels with the prefix of a process in the place of `OWN`."""
+    """Return channels with the prefix of a process instead of `OWN`."""
     return tuple(f"{name[: -len(OWN)]}{prefix}" if name.endswith(f" response {OWN}") else name for name in names)
 
 
 def client_prefix(request_id: Any) -> str:
-    """Return which process sent a request, or an empty string if that cannot be told.
+    """Return the prefix of the process that sent a request, or an empty string if it cannot be read.
 
-    rclpy keeps the client's GUID to itself; it stands in front of the sequence number, which proves the reading.
+    rclpy does not expose the client's GUID. In memory, the GUID precedes the sequence number, which serves as a check.
     """
     address = ctypes.c_void_p.from_address(id(request_id) + _VALUE).value
     if not address or ctypes.c_int64.from_address(address + _GUID).value != request_id.sequence_number:
@@ -80,7 +83,7 @@ def client_prefix(request_id: Any) -> str:
 
 
 def own_prefix(node: Any) -> str:
-    """Return the prefix of the process that a node lives in, or an empty string if the graph does not know yet."""
+    """Return the prefix of a node's process, or an empty string if the graph does not contain the node yet."""
     name, space = node.get_name(), node.get_namespace()
     for endpoint in node.get_publishers_info_by_topic("/parameter_events"):
         if (endpoint.node_name, endpoint.node_namespace) == (name, space):

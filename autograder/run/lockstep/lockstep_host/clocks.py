@@ -1,8 +1,8 @@
-"""Clocks: every clock that the student's code reads depends on ROS time alone.
+"""Makes every clock that the student's code reads depend only on ROS time.
 
-The machine's clocks, those of Python's `time` module too, show ROS time unless they are told to run at another rate.
-Each reading of them takes 10 µs, so a loop that waits for time to pass ends. Other code, such as rclpy's or Python's
-own, reads the true ones. Sleeping, by `time` or by a clock of rclpy's, lets ROS time pass.
+The system clocks, including those of Python's `time` module, show ROS time, or time at another rate if one is given.
+Each reading advances them by 10 µs, so that a loop that waits for time to pass ends. Other code, such as rclpy's or
+Python's own, reads the real clocks. Sleeping, with `time` or with a clock of rclpy, lets ROS time pass.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from rclpy.clock import Clock, ClockType
 from rclpy.time import Time
 from rclpy.utilities import get_default_context
 
-READING = 10_000  # ns that one reading takes
-_OTHERS = tuple({sys.prefix, sys.base_prefix, "/usr", "/opt/ros", "<frozen"})
+READING_NS = 10_000  # by how much each reading advances the system clocks
+_LIBRARY_PATHS = tuple({sys.prefix, sys.base_prefix, "/usr", "/opt/ros", "<frozen"})
 _clock_now = Clock.now
 _clock_sleep_until = Clock.sleep_until
 
@@ -27,9 +27,9 @@ class Clocks:
 
     Args:
         ros_time: returns ROS time in nanoseconds.
-        sleep: lets as many nanoseconds of ROS time pass; returns False where the machine's time has to pass instead.
-        host: the host's own folder, whose code keeps the machine's clocks.
-        rate: seconds that the machine's clocks count in a second of ROS time.
+        sleep: lets nanoseconds of ROS time pass, or returns False if the machine's time has to pass instead.
+        host: the host's own folder, whose code reads the real clocks.
+        rate: how many seconds the system clocks advance per second of ROS time.
     """
 
     def __init__(self, ros_time: Callable[[], int], sleep: Callable[[int], bool], host: str, rate: float = 1.0) -> None:
@@ -41,7 +41,7 @@ class Clocks:
         self._last = 0
 
     def install(self) -> None:
-        """Put the clocks into Python and rclpy."""
+        """Replace the clocks of Python and rclpy."""
         for name in ("time", "monotonic", "perf_counter"):
             self._replace(name, lambda: self.read() / 1e9)
             self._replace(f"{name}_ns", self.read)
@@ -51,46 +51,46 @@ class Clocks:
             if not self._sleep(round(seconds * 1e9 / self._rate)):
                 machine_sleep(seconds)
 
-        # The parameters have rclpy's names, since a program may pass them by name.
+        # The parameters have rclpy's names, because a program may pass them by name.
         def sleep_until(clock: Any, until: Time, context: Any = None) -> bool:
             context = context or get_default_context()
             if not context.ok() or until.clock_type != clock.clock_type:
-                return bool(_clock_sleep_until(clock, until, context))  # which raises
-            left = max(0, until.nanoseconds - self._shown(clock))
-            sleep(left / 1e9 * (self._rate if clock.clock_type == ClockType.ROS_TIME else 1.0))
+                return bool(_clock_sleep_until(clock, until, context))  # raises the error
+            remaining_ns = max(0, until.nanoseconds - self._time_of(clock))
+            sleep(remaining_ns / 1e9 * (self._rate if clock.clock_type == ClockType.ROS_TIME else 1.0))
             return bool(context.ok())
 
         def sleep_for(clock: Any, rel_time: Any, context: Any = None) -> bool:
-            end = self._shown(clock) + rel_time.nanoseconds
+            end = self._time_of(clock) + rel_time.nanoseconds
             return sleep_until(clock, Time(nanoseconds=end, clock_type=clock.clock_type), context)
 
-        setattr(time, "sleep", sleep)  # noqa: B010 - the name has a type that no stand-in has
+        setattr(time, "sleep", sleep)  # noqa: B010 - a type checker rejects another function
         Clock.now = lambda clock: self._now(clock)
         Clock.sleep_until = sleep_until
         Clock.sleep_for = sleep_for
 
     def read(self) -> int:
-        """Return the time of the machine's clocks in nanoseconds, a little later each time."""
+        """Return the time of the system clocks in nanoseconds, which is later at each call."""
         now = self._start + round((self._ros_time() - self._start) * self._rate)
-        self._last = max(self._last + READING, now)
+        self._last = max(self._last + READING_NS, now)
         return self._last
 
-    def _shown(self, clock: Any) -> int:
-        """Return what a clock of the program's shows."""
+    def _time_of(self, clock: Any) -> int:
+        """Return the time of a clock of the program in nanoseconds."""
         return self._ros_time() if clock.clock_type == ClockType.ROS_TIME else self.read()
 
     def _replace(self, name: str, stepped: Callable[[], Any]) -> None:
         machine = getattr(time, name)
 
         def read() -> Any:
-            return stepped() if self._is_student(sys._getframe(1)) else machine()
+            return stepped() if self._is_student_frame(sys._getframe(1)) else machine()
 
         setattr(time, name, read)
 
     def _now(self, clock: Any) -> Time:
-        if clock.clock_type == ClockType.ROS_TIME or not self._is_student(sys._getframe(2)):
+        if clock.clock_type == ClockType.ROS_TIME or not self._is_student_frame(sys._getframe(2)):
             return _clock_now(clock)
         return Time(nanoseconds=self.read(), clock_type=clock.clock_type)
 
-    def _is_student(self, frame: Any) -> bool:
-        return not frame.f_code.co_filename.startswith((*_OTHERS, self._host))
+    def _is_student_frame(self, frame: Any) -> bool:
+        return not frame.f_code.co_filename.startswith((*_LIBRARY_PATHS, self._host))

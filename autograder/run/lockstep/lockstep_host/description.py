@@ -1,4 +1,4 @@
-"""Descriptions of a program's nodes, from which the grader sees when all endpoints are matched."""
+"""Describes a program's nodes, so that the grader knows when all endpoints are matched."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from rclpy.clock import ClockType
 from . import channels
 from .message_counts import NOT_COUNTED, is_alive
 
-_OWN_TOPICS = NOT_COUNTED | {"/parameter_events"}  # no harness has to match these
+_OWN_TOPICS = NOT_COUNTED | {"/parameter_events"}  # endpoints on these topics are not matched with others
 
 
 def describe(nodes: list[Any]) -> dict[str, Any]:
-    """Describe nodes: their endpoints by channel, each with how many peers it has now.
+    """Describe nodes: their endpoints by channel, each with the current number of its peers.
 
-    `writers` are pairs of a channel and its subscriptions, `readers` of channels and their publishers (None where that
-    cannot be told), `clients` of the channel of their requests and whether a server is there; `servers` are the
-    channels of the requests that they take.
+    `writers` are pairs of a channel and the number of subscriptions. `readers` are pairs of several channels and the
+    number of publishers, None if that is unknown. `clients` are pairs of a request channel and whether a server exists.
+    `servers` are request channels.
     """
     writers: list[Any] = []
     readers: list[Any] = []
@@ -32,10 +32,10 @@ def describe(nodes: list[Any]) -> dict[str, Any]:
                 writers.append((channel, publisher.get_subscription_count()))
         for subscription in _alive(node.subscriptions):
             if subscription.topic_name not in NOT_COUNTED:
-                read = channels.subscription_channels(
+                names = channels.subscription_channels(
                     subscription.topic_name, subscription.msg_type, subscription.qos_profile
                 )
-                readers.append((read, subscription.handle.get_publisher_count()))
+                readers.append((names, subscription.handle.get_publisher_count()))
         for client in _alive(node.clients):
             clients.append((channels.request(client.service_name, client.srv_type), client.service_is_ready()))
         for service in _alive(node.services):

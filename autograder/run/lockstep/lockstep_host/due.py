@@ -1,7 +1,7 @@
-"""When a program has something to do although nothing was sent to it, as far as the host can see.
+"""Computes when a program has something to do although nothing was sent to it.
 
-A timer is due, or a wait times out: these instants are known. What else may move a program is not seen to come. Such a
-program is due at every instant, so that it runs as often as it would if nothing were known about it.
+The times of timers and time-outs are known. Other events that may make a program run cannot be predicted. If they are
+possible, the program is due at every instant, and so it is run in every step.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from rclpy.clock import ClockType
 from rclpy.event_handler import EventHandler
 from rclpy.exceptions import InvalidHandle
 
-EVERY_INSTANT = 0  # the ROS time that stands for it
+EVERY_INSTANT = 0  # means "at every instant" where a ROS time is expected
 
 
 def next_due(nodes: Iterable[Any], executors: Iterable[Any], wakes: Iterable[int | None]) -> int | None:
-    """Return the ROS time in ns of the next timer or of the first of `wakes`; None if there is neither.
+    """Return the ROS time in ns of the next timer or of the first of `wakes`, or None if neither exists.
 
-    It is `EVERY_INSTANT` where a coroutine waits for what it does not say, a goal may expire, a guard condition may be
-    triggered, a timer has another clock than ROS time, or another process or a signal may set the program going.
+    It is `EVERY_INSTANT` if a coroutine waits for an unknown event, a goal may expire, a guard condition may be
+    triggered, a timer does not use ROS time, or another process or a signal may make the program run.
     """
     if any(not (task.done() or task.cancelled()) for executor in executors for task, _, _ in list(executor._tasks)):
         return EVERY_INSTANT
@@ -38,10 +38,10 @@ def next_due(nodes: Iterable[Any], executors: Iterable[Any], wakes: Iterable[int
     return min(dues, default=None)
 
 
-def is_seen_coming(waitable: Any) -> bool:
-    """Return whether only counted messages and the timers of `next_due` make a waitable ready, and rclpy's own logs."""
-    own_event = isinstance(waitable, EventHandler) and waitable.callback.__module__ == EventHandler.__module__
-    return own_event or isinstance(waitable, ActionServer)
+def is_predictable(waitable: Any) -> bool:
+    """Return whether only counted messages, timers of `next_due` and rclpy's own logs can make a waitable ready."""
+    is_own_event = isinstance(waitable, EventHandler) and waitable.callback.__module__ == EventHandler.__module__
+    return is_own_event or isinstance(waitable, ActionServer)
 
 
 def _due(timer: Any) -> int | None:
@@ -49,10 +49,10 @@ def _due(timer: Any) -> int | None:
     if clock.clock_type != ClockType.ROS_TIME or not clock.ros_time_is_active:
         return EVERY_INSTANT
     try:
-        left = timer.time_until_next_call()
+        remaining_ns = timer.time_until_next_call()
     except InvalidHandle:
         return None
-    return None if left is None else max(EVERY_INSTANT, clock.now().nanoseconds + left)
+    return None if remaining_ns is None else max(EVERY_INSTANT, clock.now().nanoseconds + remaining_ns)
 
 
 def _has_children() -> bool:

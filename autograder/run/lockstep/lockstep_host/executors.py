@@ -19,7 +19,7 @@ from .callback_threads import CallbackThreads
 
 
 class CallbackThreadsExecutor(SingleThreadedExecutor):
-    """Replaces MultiThreadedExecutor: callbacks can wait for each other, but one runs at a time."""
+    """Replaces MultiThreadedExecutor. Callbacks can wait for each other, but only one runs at a time."""
 
     def __init__(self, num_threads: int | None = None, *, context: Any = None) -> None:
         super().__init__(context=context)
@@ -38,13 +38,13 @@ class CallbackThreadsExecutor(SingleThreadedExecutor):
 def spin_until_future_complete(
     executor: Executor, future: Any, timeout_sec: float | None, ros_time: Callable[[], int]
 ) -> None:
-    """Spin until a future is done, as rclpy's function of this name, with a time-out in s of ROS time."""
+    """Spin until a future is done, like rclpy's function of this name, but with a time-out in ROS time."""
     future.add_done_callback(lambda _: executor.wake())
     end = None if timeout_sec is None or timeout_sec < 0 else ros_time() + round(timeout_sec * 1e9)
-    left = None if end is None else TimeoutObject(timeout_sec or 0.0)
+    remaining = None if end is None else TimeoutObject(timeout_sec or 0.0)
     while executor.context.ok() and not future.done() and not future.cancelled() and not executor._is_shutdown:
-        executor.spin_once_until_future_complete(future, left)
-        if left is not None and end is not None:
+        executor.spin_once_until_future_complete(future, remaining)
+        if remaining is not None and end is not None:
             if ros_time() >= end:
                 return
-            left.timeout = (end - ros_time()) / 1e9
+            remaining.timeout = (end - ros_time()) / 1e9

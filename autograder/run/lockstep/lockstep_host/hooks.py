@@ -1,6 +1,6 @@
-"""Hooks into rclpy: they count what the program makes, sends and takes.
+"""Hooks into rclpy that count the endpoints that the program creates, and the messages that it sends and takes.
 
-Sending and taking are hooked at rclpy's C objects, below services, actions and executors, so no message is missed.
+Sending and taking are hooked at rclpy's C objects, below services, actions and executors, so that all messages count.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from rclpy.timer import Timer
 
 from . import channels
 from .callback_threads import Worker
-from .due import is_seen_coming
+from .due import is_predictable
 from .message_counts import NOT_COUNTED, MessageCounts, Reader
 
 _take_message = c.Subscription.take_message
@@ -37,10 +37,11 @@ _FEEDBACK = QoSProfile(depth=10)
 
 
 class Hooks:
-    """The hooks that keep one `MessageCounts`.
+    """The hooks that update one `MessageCounts`.
 
-    `note` gets the reason why steps are not all that moves the program. `changed` is True when there are endpoints or
-    timers that the grader does not know yet, `unpredictable` when the program has what no count and no timer announces.
+    `note` is called with the reason why the program may also run between steps. `changed` is True if the grader does
+    not know all endpoints and timers yet. `unpredictable` is True if anything except messages and timers may make the
+    program run.
     """
 
     def __init__(self, counts: MessageCounts, note: Callable[[str], None]) -> None:
@@ -48,72 +49,74 @@ class Hooks:
         self._note = note
         self.changed = True
         self.unpredictable = False
-        self._written: dict[tuple[int, str], tuple[str, int]] = {}  # a C object's channel and kept depth
-        self._served: dict[tuple[int, str], tuple[str, Any]] = {}  # what a C object serves or calls: name, type
+        # The channel of a C object, and the number of messages that it keeps.
+        self._publisher_channels: dict[tuple[int, str], tuple[str, int]] = {}
+        # The name and the type of the service that a C object serves or calls.
+        self._services: dict[tuple[int, str], tuple[str, Any]] = {}
 
     def install(self) -> None:
-        """Put the hooks into rclpy."""
-        _after(Publisher, "__init__", self._made_publisher)
-        _after(Subscription, "__init__", self._made_subscription)
-        _after(Client, "__init__", self._made_client)
-        _after(Service, "__init__", self._made_service)
-        _after(ActionServer, "__init__", self._made_action_server)
-        _after(ActionClient, "__init__", self._made_action_client)
-        _after(Timer, "__init__", self._made_timer)
-        _after(Clock, "create_jump_callback", self._made_jump_callback)
-        _after(Node, "add_waitable", self._added_waitable)
+        """Install the hooks in rclpy."""
+        _after(Publisher, "__init__", self._on_new_publisher)
+        _after(Subscription, "__init__", self._on_new_subscription)
+        _after(Client, "__init__", self._on_new_client)
+        _after(Service, "__init__", self._on_new_service)
+        _after(ActionServer, "__init__", self._on_new_action_server)
+        _after(ActionClient, "__init__", self._on_new_action_client)
+        _after(Timer, "__init__", self._on_new_timer)
+        _after(Clock, "create_jump_callback", self._on_new_jump_callback)
+        _after(Node, "add_waitable", self._on_new_waitable)
         for method in ("publish", "publish_raw"):
-            _after(c.Publisher, method, partial(self._wrote, ""))
-        _after(c.Client, "send_request", partial(self._asked, ""))
-        _after(c.Client, "take_response", partial(self._took, ""))
-        _after(c.Service, "service_take_request", partial(self._took, ""))
-        _after(c.Service, "service_send_response", partial(self._answered, "", 1))
+            _after(c.Publisher, method, partial(self._on_published, ""))
+        _after(c.Client, "send_request", partial(self._on_request_sent, ""))
+        _after(c.Client, "take_response", partial(self._on_taken, ""))
+        _after(c.Service, "service_take_request", partial(self._on_taken, ""))
+        _after(c.Service, "service_send_response", partial(self._on_response_sent, "", 1))
         for part in _PARTS:
-            _after(c.ActionClient, f"send_{part}_request", partial(self._asked, part))
-            _after(c.ActionClient, f"take_{part}_response", partial(self._took, part))
-            _after(c.ActionServer, f"take_{part}_request", partial(self._took, part))
-            _after(c.ActionServer, f"send_{part}_response", partial(self._answered, part, 0))
+            _after(c.ActionClient, f"send_{part}_request", partial(self._on_request_sent, part))
+            _after(c.ActionClient, f"take_{part}_response", partial(self._on_taken, part))
+            _after(c.ActionServer, f"take_{part}_request", partial(self._on_taken, part))
+            _after(c.ActionServer, f"send_{part}_response", partial(self._on_response_sent, part, 0))
         for part in ("feedback", "status"):
-            _after(c.ActionServer, f"publish_{part}", partial(self._wrote, part))
-        _after(c.ActionClient, "take_feedback", partial(self._took, "feedback"))
+            _after(c.ActionServer, f"publish_{part}", partial(self._on_published, part))
+        _after(c.ActionClient, "take_feedback", partial(self._on_taken, "feedback"))
         c.Subscription.take_message = lambda handle, kind, raw: self._take_message(handle, kind, raw)
-        ActionClient.is_ready = _is_ready_but_for_status
+        ActionClient.is_ready = _is_ready_except_for_status
 
-    # What was made.
+    # Called after an object was created.
 
-    def _made_publisher(self, publisher: Any, *_: Any, **__: Any) -> None:
+    def _on_new_publisher(self, publisher: Any, *_: Any, **__: Any) -> None:
         if publisher.topic_name not in NOT_COUNTED:
             channel = channels.publisher_channel(publisher.topic_name, publisher.msg_type, publisher.qos_profile)
             depth = (publisher.qos_profile.depth or 1) if channels.is_transient_local(channel) else 0
-            self._written[(publisher.handle.pointer, "")] = channel, depth
+            self._publisher_channels[(publisher.handle.pointer, "")] = channel, depth
             self.changed = True
 
-    def _made_subscription(self, subscription: Any, *_: Any, **__: Any) -> None:
+    def _on_new_subscription(self, subscription: Any, *_: Any, **__: Any) -> None:
         if subscription.topic_name in NOT_COUNTED:
             self.unpredictable = True
         else:
             qos = subscription.qos_profile
-            read = channels.subscription_channels(subscription.topic_name, subscription.msg_type, qos)
+            names = channels.subscription_channels(subscription.topic_name, subscription.msg_type, qos)
             transient_local = qos.durability.name == "TRANSIENT_LOCAL"
             self.counts.add(
-                subscription.handle, Reader(subscription, read, depth=qos.depth or 1, transient_local=transient_local)
+                subscription.handle, Reader(subscription, names, depth=qos.depth or 1, transient_local=transient_local)
             )
             self.changed = True
 
-    def _made_client(self, client: Any, *_: Any, **__: Any) -> None:
-        self._calls(client, client.handle, "", 0, client.service_name, client.srv_type)
+    def _on_new_client(self, client: Any, *_: Any, **__: Any) -> None:
+        self._add_client(client, client.handle, "", 0, client.service_name, client.srv_type)
 
-    def _made_service(self, service: Any, *_: Any, **__: Any) -> None:
-        self._serves(service, service.handle, "", 0, service.service_name, service.srv_type)
+    def _on_new_service(self, service: Any, *_: Any, **__: Any) -> None:
+        self._add_service(service, service.handle, "", 0, service.service_name, service.srv_type)
 
-    # The parameters have rclpy's names, since a program may pass them by name.
-    def _made_action_server(
+    # The parameters have rclpy's names, because a program may pass them by name.
+    def _on_new_action_server(
         self, server: Any, node: Any, action_type: Any, action_name: str, *_: Any, **options: Any
     ) -> None:
-        for index, (part, (service, of)) in enumerate(_PARTS.items()):
+        for index, (part, (service, interface)) in enumerate(_PARTS.items()):
             resolved = node.resolve_service_name(f"{action_name}/_action/{service}")
-            self._serves(server, server._handle, part, index, resolved, getattr(action_type.Impl, of))
-        for part, of, qos in (
+            self._add_service(server, server._handle, part, index, resolved, getattr(action_type.Impl, interface))
+        for part, interface, qos in (
             ("feedback", action_type.Impl.FeedbackMessage, options.get("feedback_pub_qos_profile", _FEEDBACK)),
             (
                 "status",
@@ -122,104 +125,114 @@ class Hooks:
             ),
         ):
             topic = node.resolve_topic_name(f"{action_name}/_action/{part}")
-            self._written[(server._handle.pointer, part)] = channels.publisher_channel(topic, of, qos), 0
+            self._publisher_channels[(server._handle.pointer, part)] = (
+                channels.publisher_channel(topic, interface, qos),
+                0,
+            )
         server.lockstep_requests = self._requests(server._handle)
-        server.lockstep_feedback = self._written[(server._handle.pointer, "feedback")][0]
+        server.lockstep_feedback = self._publisher_channels[(server._handle.pointer, "feedback")][0]
 
-    def _made_action_client(
+    def _on_new_action_client(
         self, client: Any, node: Any, action_type: Any, action_name: str, *_: Any, **options: Any
     ) -> None:
-        for index, (part, (service, of)) in enumerate(_PARTS.items()):
+        for index, (part, (service, interface)) in enumerate(_PARTS.items()):
             resolved = node.resolve_service_name(f"{action_name}/_action/{service}")
-            self._calls(client, client._client_handle, part, 2 + index, resolved, getattr(action_type.Impl, of))
+            self._add_client(
+                client, client._client_handle, part, 2 + index, resolved, getattr(action_type.Impl, interface)
+            )
         topic = node.resolve_topic_name(f"{action_name}/_action/feedback")
         qos = options.get("feedback_sub_qos_profile", _FEEDBACK)
-        read = channels.subscription_channels(topic, action_type.Impl.FeedbackMessage, qos)
-        self.counts.add(client._client_handle, Reader(client, read, part=("feedback", 0), depth=qos.depth or 1))
+        names = channels.subscription_channels(topic, action_type.Impl.FeedbackMessage, qos)
+        self.counts.add(client._client_handle, Reader(client, names, part=("feedback", 0), depth=qos.depth or 1))
         client.lockstep_requests = self._requests(client._client_handle)
-        client.lockstep_feedback = read
+        client.lockstep_feedback = names
 
-    def _made_timer(self, timer: Any, *_: Any, **__: Any) -> None:
+    def _on_new_timer(self, timer: Any, *_: Any, **__: Any) -> None:
         self.changed = True
         if timer.clock.clock_type != ClockType.ROS_TIME:
             self._note("clock")
 
-    def _made_jump_callback(self, *_: Any, **__: Any) -> None:
-        self.unpredictable = True  # it is told by how much each setting of the time moves a clock
+    def _on_new_jump_callback(self, *_: Any, **__: Any) -> None:
+        self.unpredictable = True  # it is called whenever the time changes
 
-    def _added_waitable(self, node: Any, waitable: Any, **_: Any) -> None:
-        self.unpredictable |= not is_seen_coming(waitable)
+    def _on_new_waitable(self, node: Any, waitable: Any, **_: Any) -> None:
+        self.unpredictable |= not is_predictable(waitable)
 
     def _requests(self, handle: Any) -> list[str]:
-        return [channels.request(*self._served[(handle.pointer, part)]) for part in _PARTS]
+        return [channels.request(*self._services[(handle.pointer, part)]) for part in _PARTS]
 
-    def _calls(self, entity: Any, handle: Any, part: str, index: int, name: str, kind: Any) -> None:
-        self._served[(handle.pointer, part)] = name, kind
+    def _add_client(self, entity: Any, handle: Any, part: str, index: int, name: str, kind: Any) -> None:
+        self._services[(handle.pointer, part)] = name, kind
         self.counts.add(handle, Reader(entity, (channels.response(name, kind, channels.OWN),), part=(part, index)))
         self.changed = True
 
-    def _serves(self, entity: Any, handle: Any, part: str, index: int, name: str, kind: Any) -> None:
-        self._served[(handle.pointer, part)] = name, kind
+    def _add_service(self, entity: Any, handle: Any, part: str, index: int, name: str, kind: Any) -> None:
+        self._services[(handle.pointer, part)] = name, kind
         self.counts.add(handle, Reader(entity, (channels.request(name, kind),), part=(part, index)))
         self.changed = True
 
-    # What was sent.
+    # Called after a message was sent.
 
-    def _wrote(self, part: str, handle: Any, *_: Any, result: Any) -> None:
-        there = self._written.get((handle.pointer, part))
-        if there is not None:
-            self._sent(*there)
+    def _on_published(self, part: str, handle: Any, *_: Any, result: Any) -> None:
+        channel_and_depth = self._publisher_channels.get((handle.pointer, part))
+        if channel_and_depth is not None:
+            self._count_sent(*channel_and_depth)
 
-    def _asked(self, part: str, handle: Any, *_: Any, result: Any) -> None:
-        self._sent(channels.request(*self._served[(handle.pointer, part)]))
+    def _on_request_sent(self, part: str, handle: Any, *_: Any, result: Any) -> None:
+        self._count_sent(channels.request(*self._services[(handle.pointer, part)]))
 
-    def _answered(self, part: str, index: int, handle: Any, *arguments: Any, result: Any) -> None:
-        name, kind = self._served[(handle.pointer, part)]
-        self._sent(channels.response(name, kind, channels.client_prefix(arguments[index])))
+    def _on_response_sent(self, part: str, index: int, handle: Any, *arguments: Any, result: Any) -> None:
+        name, kind = self._services[(handle.pointer, part)]
+        self._count_sent(channels.response(name, kind, channels.client_prefix(arguments[index])))
 
-    def _sent(self, channel: str, depth: int = 0) -> None:
+    def _count_sent(self, channel: str, depth: int = 0) -> None:
         thread = threading.current_thread()
         if thread is not threading.main_thread() and not isinstance(thread, Worker):
             self._note("thread")
-        self.counts.sent(channel, depth)
+        self.counts.count_sent(channel, depth)
 
-    # What was taken.
+    # Called after a message was taken.
 
-    def _took(self, part: str, handle: Any, *_: Any, result: Any) -> None:
+    def _on_taken(self, part: str, handle: Any, *_: Any, result: Any) -> None:
         if result is not None and not (isinstance(result, tuple) and any(value is None for value in result)):
-            self.counts.took(handle, part)
+            self.counts.count_taken(handle, part)
 
     def _take_message(self, handle: Any, kind: Any, raw: bool) -> Any:
-        taken = _take_message(handle, kind, raw)
-        if taken is None:
+        message = _take_message(handle, kind, raw)
+        if message is None:
             return None
         reader = self.counts.readers.get((handle.pointer, ""))
-        if reader is not None and not reader.transient_local and taken[1]["source_timestamp"] < reader.matched_ns:
-            return None  # it was on its way when the reader was matched, so whether it comes is up to chance
-        self.counts.took(handle, "")
-        return taken
+        if reader is not None and not reader.transient_local and message[1]["source_timestamp"] < reader.matched_ns:
+            return None  # sent before the reader was matched, so its arrival depends on chance
+        self.counts.count_taken(handle, "")
+        return message
 
 
-def _is_ready_but_for_status(client: Any, wait_set: Any) -> bool:
-    """Take a goal's new status at once. Its queue holds one message, so how many come is up to chance."""
+def _is_ready_except_for_status(client: Any, wait_set: Any) -> bool:
+    """Return whether a client is ready, but take a goal's new status at once.
+
+    The status has a queue of one message, so the number of messages that arrive depends on chance.
+    """
     ready = bool(_is_ready(client, wait_set))
-    answered = client._is_goal_response_ready or client._is_cancel_response_ready or client._is_result_response_ready
-    if ready and not answered and not client._is_feedback_ready:
-        taking = client.execute(client.take_data())
+    has_response = (
+        client._is_goal_response_ready or client._is_cancel_response_ready or client._is_result_response_ready
+    )
+    if ready and not has_response and not client._is_feedback_ready:
+        execution = client.execute(client.take_data())
         try:
-            taking.send(None)
+            execution.send(None)
         except StopIteration:
             return False
     return ready
 
 
-def _after(kind: Any, method: str, then: Callable[..., None]) -> None:
-    """Call `then` after each call of a method, with the call's arguments and its result."""
+def _after(kind: Any, method: str, callback: Callable[..., None]) -> None:
+    """Call `callback` after each call of a method, with the call's arguments and its result."""
     original = getattr(kind, method)
 
     def call(self: Any, *arguments: Any, **options: Any) -> Any:
         result = original(self, *arguments, **options)
-        then(self, *arguments, **options, result=result)
+        callback(self, *arguments, **options, result=result)
         return result
 
     setattr(kind, method, call)

@@ -8,7 +8,7 @@ from typing import Any
 
 
 class Pipes:
-    """The host's end of the pipes, a JSON object a line. When the grader closes them, the program is to quit."""
+    """The host's side of the pipes, with a JSON object per line. When the grader closes them, the program quits."""
 
     def __init__(self, read_fd: int, write_fd: int) -> None:
         self._reader = os.fdopen(read_fd, "r", encoding="utf-8")

@@ -1,6 +1,7 @@
-"""Positions of rclpy's coroutines.
+"""Tracks the positions at which rclpy's coroutines wait.
 
-rclpy resumes waiting coroutines over and over, and does not say what they wait for.
+rclpy resumes waiting coroutines again and again, without knowing what they wait for. So only a change of its position
+shows that a coroutine has advanced.
 """
 
 from __future__ import annotations
@@ -10,25 +11,25 @@ from typing import Any
 
 
 class TaskPositions:
-    """Where tasks stood when they were last resumed."""
+    """The positions of tasks when they were last resumed."""
 
     def __init__(self) -> None:
         self._positions: dict[Any, int] = {}
         self._resumed: weakref.WeakSet[Any] = weakref.WeakSet()
 
     def clear(self) -> None:
-        """Forget the positions: something happened that tasks may wait for."""
+        """Forget the positions, because something has happened for which tasks may wait."""
         self._positions.clear()
 
     def advances(self, task: Any) -> bool:
         """Return whether a task has something to do when it is resumed.
 
-        One that stands where it stood, while nothing else has happened, has nothing to do before the next step.
+        If its position is unchanged, and nothing else has happened, it has nothing to do before the next step.
         """
         position = position_of(task)
         if task not in self._resumed or self._positions.get(task, position) != position:
             self._resumed.add(task)
-            self.clear()  # this one advances, which may be what others wait for
+            self.clear()  # other tasks may wait for this one
         elif task in self._positions:
             return False
         self._positions[task] = position
@@ -37,15 +38,15 @@ class TaskPositions:
 
 def position_of(task: Any) -> int:
     """Return a number that changes when a task's coroutine advances."""
-    place, inner = -1, task._handler
+    position, inner = -1, task._handler
     while inner is not None:
         frame = getattr(inner, "cr_frame", None)
-        place = hash((place, frame.f_lasti)) if frame is not None else place
+        position = hash((position, frame.f_lasti)) if frame is not None else position
         inner = getattr(inner, "cr_await", None)
-    return place
+    return position
 
 
-def awaited(task: Any) -> Any:
+def awaited_future(task: Any) -> Any:
     """Return the future that a task's coroutine waits for, or None."""
     inner = task._handler
     while getattr(inner, "cr_await", None) is not None:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Drive up to what stands ahead, and stop in front of it, by parameters that can change."""
+"""Drive up to an obstacle ahead, and stop in front of it, by parameters that can change."""
 
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import SetParametersResult
@@ -40,7 +40,7 @@ class ConfiguredNode(Node):
         super().__init__('configured_node', **kwargs)
         declare_configuration(self)
         self.distance = None  # m straight ahead; None while the robot is blind
-        self.charge = None  # percent; None until the battery has spoken
+        self.charge = None  # percent; None until a battery state has come
         self.cmd_vel_pub = self.create_publisher(Twist, 'cmd_vel', 10)
         self.create_subscription(
             LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data)
@@ -63,8 +63,8 @@ class ConfiguredNode(Node):
         parameters: those that are to change, each with a name and a value; the others keep
         their present values. ROS has already checked types, ranges and read_only.
 
-        Return a SetParametersResult: successful, or not and then with the sentence of
-        contradiction as its reason.
+        Return a SetParametersResult: successful, or refused with contradiction's sentence
+        as its reason.
         """
         proposed = {parameter.name: parameter.value for parameter in parameters}
         reason = contradiction(
@@ -106,8 +106,8 @@ class ConfiguredNode(Node):
         """
         Return the forward speed in m/s.
 
-        Full speed from slow_distance on, falling evenly to nothing at safety_distance;
-        nothing without a reading (nan fails each comparison) or with a battery below its
+        Full speed from slow_distance on, falling evenly to 0 at safety_distance.
+        It is 0 without a reading (nan fails each comparison), or with a battery below its
         threshold.
         """
         if self.charge is not None and self.charge < self.value('battery_threshold'):

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 
-"""Try something risky once a second, and say how it went."""
+"""Read a sensor once a second, and publish how it went."""
 
 import random
 
@@ -37,8 +37,8 @@ def read_sensor(generator, failure_probability):
     """
     Return 'Success', or raise SensorError with the given probability.
 
-    It stands for a file, a network or a device. It fails when generator.random(), a number
-    in [0, 1), is below failure_probability; it asks the generator once.
+    It stands in for a file, a network or a device. It calls generator.random() once, and
+    fails when that number, in [0, 1), is below failure_probability.
     """
     if generator.random() < failure_probability:
         raise SensorError('the sensor did not answer')
@@ -59,8 +59,8 @@ class RobustNode(Node):
         Declare the parameters, create the publisher (STATUS_QOS) and the timer (PERIOD).
 
         failure_probability: float, 0.1, from 0 to 1. seed: int, 0, from 0 to 2**31 - 1.
-        max_errors: int, 10, from 1 to 1000. The generator is the one that is passed in;
-        without one it is random.Random(seed), and with the seed 0 random.Random(), which
+        max_errors: int, 10, from 1 to 1000. The generator is the one that is passed in.
+        Without one, it is random.Random(seed), or, if the seed is 0, random.Random(), which
         is different each time. kwargs are handed on to Node.
         """
         super().__init__('robust_node', **kwargs)
@@ -93,10 +93,10 @@ class RobustNode(Node):
         """
         Read the sensor once, count, log and publish.
 
-        A SensorError is expected: count it and log it as an error, at most once in 5 s. The
-        failure that makes the node unstable is logged as fatal, once. The first success
-        after failures is logged as 'Recovered after N errors', and the count starts again.
-        Every other exception is a bug, and is not caught here.
+        A SensorError is expected: count it, and log it as an error unless one was logged
+        less than 5 s before. The failure that makes the node unstable is logged as fatal,
+        once. The first success after failures is logged as 'Recovered after N errors', and
+        the count starts again. Every other exception is a bug, and is not caught here.
         """
         try:
             read_sensor(self.generator, self.failure_probability)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Publish each laser scan again, with the readings that are no measurement masked."""
+"""Publish each laser scan again, with nan for each reading that is not a measurement."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -32,8 +32,9 @@ class SensorProcessor(Node):
     Cleans scans for the nodes that act on them.
 
     Subscribes to scan (sensor_msgs/LaserScan). Publishes scan_filtered
-    (sensor_msgs/LaserScan), with nan where a reading is no measurement, and mean_distance
-    (std_msgs/Float32), how far away things were on average in the newest HISTORY scans.
+    (sensor_msgs/LaserScan), with nan where a reading is not a measurement, and
+    mean_distance (std_msgs/Float32), how far away things were on average in the newest
+    HISTORY scans.
     """
 
     def __init__(self, **kwargs):
@@ -56,8 +57,8 @@ class SensorProcessor(Node):
         """
         Publish the scan with its ranges masked and all else as it came, then the mean.
 
-        A scan without a finite distance changes no mean: it is published masked, no mean
-        with it, and a warning says so, at most one every WARN_PERIOD.
+        A scan without a finite distance changes no mean. It is published masked, without a
+        mean, and a warning says so, at most once every WARN_PERIOD.
         """
         msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max)
         self.filtered_pub.publish(msg)

@@ -23,12 +23,12 @@ HISTORY = 100  # scans
 
 def mask_invalid(ranges: Sequence[float], range_min: float, range_max: float) -> list[float]:
     """
-    Return the ranges with every reading that is no measurement replaced by nan.
+    Return the ranges with every reading that is not a measurement replaced by nan.
 
     The result is as long as `ranges`: a reading's place in the list is its bearing, so none
-    may be dropped. By REP 117, +inf (no return) and -inf (too near to measure) are
-    statements of the lidar and stay; a finite number outside range_min to range_max is a
-    phantom. All distances are in metres.
+    may be dropped. In REP 117, +inf means no return and -inf too near to measure, so both
+    stay; a finite number outside range_min to range_max is a phantom. All distances are in
+    metres.
     """
     return [
         reading if math.isinf(reading) or range_min <= reading <= range_max else math.nan
@@ -46,7 +46,7 @@ class DataProcessor:
     """Cleans scans, and remembers the mean distance of the newest ones."""
 
     def __init__(self, history: int = HISTORY) -> None:
-        """Remember the means of at most `history` scans; an old one makes room for a new."""
+        """Remember the means of at most `history` scans; a new one replaces the oldest."""
         self.history: deque[float] = deque(maxlen=history)
 
     def process(

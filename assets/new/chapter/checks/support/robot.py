@@ -8,7 +8,7 @@ from std_msgs.msg import Float32
 from autograder.checking import AutoHarness, Workspace, expect
 from autograder.checks.chNEW_CHAPTER.support import contract
 
-SECONDS = 0.1  # of ROS time, from one scan to the next
+SECONDS = 0.1  # ROS time between two scans, in s
 
 
 class Robot(AutoHarness):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .configurations import (
     DeclareLaunchArgument,
@@ -55,4 +55,4 @@ __all__ = [
     "UnsetLaunchConfiguration",
 ]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -1,4 +1,4 @@
-"""Actions on launch configurations: declare, set, save, restore and scope them."""
+"""Actions that declare, set, save, restore and scope launch configurations."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .environment import PopEnvironment, PushEnvironment, ResetEnvironment
 class DeclareLaunchArgument(ArgumentDeclaration):
     """Declares an argument, whose value is the launch configuration of the same name.
 
-    The default, if there is one, is performed when the declaration is executed and nobody has set a value.
+    When the declaration is executed and no value is set, the default is performed.
     """
 
     def __init__(
@@ -39,14 +39,14 @@ class DeclareLaunchArgument(ArgumentDeclaration):
         self.choices = choices
         if self.choices is not None:
             if not self.choices:
-                self._refuse("Provided choices arg is empty. Use None to ignore the choice list.")
+                self._fail("Provided choices arg is empty. Use None to ignore the choice list.")
             if isinstance(default_value, str) and default_value not in self.choices:
-                self._refuse(f'Provided default_value "{default_value}" is not in provided choices "{self.choices}".')
-        self.description = self._described(description)
+                self._fail(f'Provided default_value "{default_value}" is not in provided choices "{self.choices}".')
+        self.description = self._full_description(description)
         # Set while the arguments of a launch description are collected.
         self._conditionally_included = False
 
-    def _described(self, description: str | None) -> str:
+    def _full_description(self, description: str | None) -> str:
         if self.choices is None:
             return "no description given" if description is None else description
         if description is None:
@@ -54,15 +54,15 @@ class DeclareLaunchArgument(ArgumentDeclaration):
         return f"{description}{'' if description.endswith('.') else '.'} Valid choices are: {self.choices}"
 
     @staticmethod
-    def _refuse(message: str, *, logged: str | None = None) -> None:
+    def _fail(message: str, *, logged: str | None = None) -> None:
         get_logger("launch.actions.declare_launch_argument").error(logged or message)
         raise RuntimeError(message)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set the default if there is no value; RuntimeError for a missing or an invalid value."""
+        """Set the default if no value is set; raise RuntimeError for a missing or an invalid value."""
         if self.name not in context.launch_configurations:
             if self.default_value is None:
-                self._refuse(
+                self._fail(
                     f'Required launch argument "{self.name}" was not provided.',
                     logged=f'Required launch argument "{self.name}" (description: "{self.description}") '
                     "was not provided",
@@ -71,7 +71,7 @@ class DeclareLaunchArgument(ArgumentDeclaration):
                 context.launch_configurations[self.name] = perform_substitutions(context, self.default_value)
         value = context.launch_configurations[self.name]
         if self.choices is not None and value not in self.choices:
-            self._refuse(
+            self._fail(
                 f'Argument "{self.name}" provided value "{value}" is not valid. Valid options are: {self.choices}'
             )
 
@@ -85,20 +85,20 @@ class SetLaunchConfiguration(Action):
         self.value = normalize_to_list_of_substitutions(value)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it."""
+        """Set the launch configuration."""
         name = perform_substitutions(context, self.name)
         context.launch_configurations[name] = perform_substitutions(context, self.value)
 
 
 class UnsetLaunchConfiguration(Action):
-    """Removes a launch configuration, if it is there."""
+    """Removes a launch configuration, if it exists."""
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.name = normalize_to_list_of_substitutions(name)
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove it."""
+        """Remove the launch configuration."""
         context.launch_configurations.pop(perform_substitutions(context, self.name), None)
 
 
@@ -106,7 +106,7 @@ class PushLaunchConfigurations(Action):
     """Saves the launch configurations."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Save them."""
+        """Save the launch configurations."""
         context._push_launch_configurations()
 
 
@@ -114,12 +114,12 @@ class PopLaunchConfigurations(Action):
     """Restores the launch configurations that were saved last."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore them."""
+        """Restore the launch configurations."""
         context._pop_launch_configurations()
 
 
 class ResetLaunchConfigurations(ArgumentScope):
-    """Removes all launch configurations but those given, whose values are performed before."""
+    """Removes all launch configurations except the given ones, whose values are performed first."""
 
     def __init__(
         self,
@@ -127,25 +127,26 @@ class ResetLaunchConfigurations(ArgumentScope):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self._kept = [
+        self._kept_configurations = [
             (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value))
             for name, value in (launch_configurations or {}).items()
         ]
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove them."""
-        kept: dict[str, str] = {
-            perform_substitutions(context, name): perform_substitutions(context, value) for name, value in self._kept
+        """Remove the other launch configurations."""
+        kept_configurations: dict[str, str] = {
+            perform_substitutions(context, name): perform_substitutions(context, value)
+            for name, value in self._kept_configurations
         }
         context.launch_configurations.clear()
-        context.launch_configurations.update(kept)
+        context.launch_configurations.update(kept_configurations)
 
 
 class GroupAction(Action):
-    """Executes actions together, by default in a scope of their own.
+    """Executes actions together, by default in their own scope.
 
-    What they change of launch configurations and environment ends with the scope. Without `forwarding` they
-    see none of those from outside, except the `launch_configurations` given here.
+    At the end of the scope, launch configurations and environment are restored. Without `forwarding`, the scope starts
+    with the environment from before the launch, and with no configurations except the given `launch_configurations`.
     """
 
     def __init__(
@@ -159,26 +160,26 @@ class GroupAction(Action):
     ) -> None:
         super().__init__(**kwargs)
         configurations = launch_configurations or {}
-        sets = [SetLaunchConfiguration(name, value) for name, value in configurations.items()]
-        inside: list[LaunchDescriptionEntity] = [*sets, *actions]
+        set_actions = [SetLaunchConfiguration(name, value) for name, value in configurations.items()]
+        entities: list[LaunchDescriptionEntity] = [*set_actions, *actions]
         if scoped and forwarding:
-            inside = [PushLaunchConfigurations(), PushEnvironment(), *inside]
+            entities = [PushLaunchConfigurations(), PushEnvironment(), *entities]
         elif scoped:
-            inside = [
+            entities = [
                 PushLaunchConfigurations(),
                 PushEnvironment(),
                 ResetEnvironment(),
                 ResetLaunchConfigurations(configurations),
-                *inside[len(sets) :],
+                *entities[len(set_actions) :],
             ]
         if scoped:
-            inside += [PopEnvironment(), PopLaunchConfigurations()]
-        self._entities = inside
+            entities += [PopEnvironment(), PopLaunchConfigurations()]
+        self._entities = entities
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the actions, with those that make the scope around them."""
+        """Return the actions, with the actions that create and end their scope."""
         return self._entities
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the actions, to be executed next."""
+        """Return the actions, which are executed next."""
         return self._entities

@@ -1,4 +1,4 @@
-"""Actions on the environment that substitutions read and processes inherit."""
+"""Actions on the environment, which substitutions read and processes inherit."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ class SetEnvironmentVariable(Action):
         self.value = normalize_to_list_of_substitutions(value)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it."""
+        """Set the variable."""
         name = perform_substitutions(context, self.name)
         context.environment[name] = perform_substitutions(context, self.value)
 
 
 class UnsetEnvironmentVariable(Action):
-    """Removes an environment variable, if it is there."""
+    """Removes an environment variable, if it exists."""
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.name = normalize_to_list_of_substitutions(name)
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove it."""
+        """Remove the variable."""
         context.environment.pop(perform_substitutions(context, self.name), None)
 
 
 class AppendEnvironmentVariable(Action):
-    """Appends to an environment variable, or prepends, with a separator; sets it if it is not there."""
+    """Appends or prepends a value to an environment variable, with a separator; sets it if it does not exist."""
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class AppendEnvironmentVariable(Action):
         self.separator = normalize_to_list_of_substitutions(separator)
 
     def execute(self, context: LaunchContext) -> None:
-        """Append or prepend."""
+        """Append or prepend the value."""
         name = perform_substitutions(context, self.name)
         parts = [perform_substitutions(context, self.value)]
         if name in context.environment:
@@ -72,7 +72,7 @@ class PushEnvironment(Action):
     """Saves the environment."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Save it."""
+        """Save the environment."""
         context._push_environment()
 
 
@@ -80,7 +80,7 @@ class PopEnvironment(Action):
     """Restores the environment that was saved last."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore it."""
+        """Restore the environment."""
         context._pop_environment()
 
 
@@ -88,5 +88,5 @@ class ResetEnvironment(Action):
     """Restores the environment from before the launch."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Restore it."""
+        """Restore the environment."""
         context._reset_environment()

@@ -1,4 +1,4 @@
-"""The action that runs a process and looks after it until it has ended."""
+"""The action that runs a process and waits until it has ended."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any, cast
 from .._launch_event_handlers import OnShutdown
 from .._output import OutputText
 from .._process import ChildProcess
-from ..action import Action, the_loop
+from ..action import Action, running_loop
 from ..conditions import evaluate_condition_expression
 from ..descriptions import Executable
 from ..event import Event
@@ -44,8 +44,8 @@ from .opaque_function import OpaqueFunction
 class ExecuteLocal(Action):
     """Runs an executable; emits events when it starts, writes and exits.
 
-    At the end of the launch the process gets SIGINT; if it then still runs, SIGTERM after `sigterm_timeout`
-    seconds and SIGKILL after further `sigkill_timeout` seconds.
+    At the end of the launch the process gets SIGINT. If it keeps running, it gets SIGTERM after `sigterm_timeout`
+    seconds, and SIGKILL `sigkill_timeout` seconds later.
     """
 
     def __init__(
@@ -84,13 +84,13 @@ class ExecuteLocal(Action):
         self._on_exit = on_exit
         self._respawn = normalize_typed_substitution(respawn, bool)
         self._respawn_delay = respawn_delay or 0.0
-        self._respawns_left = respawn_max_retries
+        self._remaining_respawns = respawn_max_retries
         self._streams = {source: OutputText(keep=cached_output) for source in ("stdout", "stderr")}
         self._loggers: dict[str, logging.Logger] = {}
         self._details: dict[str, Any] | None = None
         self._child: ChildProcess | None = None
-        self._shutdown_asked: asyncio.Future[bool] | None = None
-        self._completed: asyncio.Future[None] | None = None
+        self._shutdown_requested: asyncio.Future[bool] | None = None
+        self._completion: asyncio.Future[None] | None = None
 
     @property
     def process_details(self) -> dict[str, Any] | None:
@@ -107,18 +107,18 @@ class ExecuteLocal(Action):
         return list(self._on_exit) if isinstance(self._on_exit, (list, tuple)) else []
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
-        """Return the future that is done when the process has ended for good."""
-        return self._completed
+        """Return the future that is done when the process has ended and is not respawned."""
+        return self._completion
 
     def get_stdout(self) -> str:
         """Return all standard output so far; RuntimeError unless `cached_output` is set."""
-        return self._cached("stdout")
+        return self._cached_text("stdout")
 
     def get_stderr(self) -> str:
         """Return all standard error so far; RuntimeError unless `cached_output` is set."""
-        return self._cached("stderr")
+        return self._cached_text("stderr")
 
-    def _cached(self, source: str) -> str:
+    def _cached_text(self, source: str) -> str:
         if not self._cached_output:
             raise RuntimeError(
                 f"cached output must be true to be able to get {source}, proc '{self.process_description.final_name}'"
@@ -139,25 +139,25 @@ class ExecuteLocal(Action):
         self._respawn = perform_typed_substitution(context, self._respawn, bool)
 
     def execute(self, context: LaunchContext) -> OptionalEntities:
-        """Start the process, unless the launch is ending already."""
+        """Start the process, unless the launch is already shutting down."""
         self.prepare(context)
         name = self.process_description.final_name
-        if self._completed is not None:
+        if self._completion is not None:
             raise RuntimeError(f"ExecuteLocal action '{name}': executed more than once: {self.describe()}")
         if context.is_shutdown:
             return None
         output = self.output if isinstance(self.output, Mapping) else perform_substitutions(context, self.output)
         self._logger = get_logger(name)
         self._loggers = dict(zip(("stdout", "stderr"), get_output_loggers(name, output), strict=True))
-        loop = the_loop(context)
-        self._completed = loop.create_future()
-        self._shutdown_asked = loop.create_future()
+        loop = running_loop(context)
+        self._completion = loop.create_future()
+        self._shutdown_requested = loop.create_future()
         context.register_event_handler(
-            EventHandler(matcher=self._is_for_me, entities=OpaqueFunction(function=self._on_targeted_event))
+            EventHandler(matcher=self._matches, entities=OpaqueFunction(function=self._on_targeted_event))
         )
         context.register_event_handler(OnShutdown(on_shutdown=self._on_shutdown))
         if self._on_exit is not None:
-            # `OnProcessExit` stands above this module: this is what it makes.
+            # This equals an `OnProcessExit`, which this module cannot import, as that imports this module.
             on_exit = OnActionEventBase(
                 action_matcher=self,
                 on_event=self._on_exit,
@@ -168,13 +168,13 @@ class ExecuteLocal(Action):
         context.start_task(self._run(context))
         return None
 
-    def _is_for_me(self, event: Event) -> bool:
+    def _matches(self, event: Event) -> bool:
         return isinstance(event, ProcessTargetedEvent) and event.process_matcher(self)
 
     def _on_targeted_event(self, context: LaunchContext) -> None:
         event = context.locals.event
         if isinstance(event, ShutdownProcess):
-            self._ask_to_end(quietly=False)
+            self._request_shutdown(is_quiet=False)
         elif isinstance(event, SignalProcess):
             if self._child is None:
                 raise RuntimeError("Signal event received before execution.")
@@ -184,34 +184,34 @@ class ExecuteLocal(Action):
             self._child.send_signal(event.signal)
 
     def _on_shutdown(self, event: Event, context: LaunchContext) -> None:
-        self._ask_to_end(quietly=cast(Shutdown, event).due_to_sigint and not context.noninteractive)
+        self._request_shutdown(is_quiet=cast(Shutdown, event).due_to_sigint and not context.noninteractive)
 
-    def _ask_to_end(self, *, quietly: bool) -> None:
-        if self._shutdown_asked is not None and not self._shutdown_asked.done():
-            self._shutdown_asked.set_result(quietly)
+    def _request_shutdown(self, *, is_quiet: bool) -> None:
+        if self._shutdown_requested is not None and not self._shutdown_requested.done():
+            self._shutdown_requested.set_result(is_quiet)
 
     def _emit_signal(self, context: LaunchContext, number: signal.Signals) -> None:
         context.emit_event_sync(SignalProcess(signal_number=number, process_matcher=lambda action: action is self))
 
     async def _run(self, context: LaunchContext) -> None:
-        """Run the process, and again as long as it is to be respawned."""
-        assert self._completed is not None
+        """Run the process, and respawn it as configured."""
+        assert self._completion is not None
         try:
-            while await self._run_once(context) and await self._wants_respawn(context):
+            while await self._run_once(context) and await self._should_respawn(context):
                 pass
         except Exception as error:
-            self._completed.set_exception(error)
+            self._completion.set_exception(error)
         finally:
-            if not self._completed.done():
-                self._completed.set_result(None)
+            if not self._completion.done():
+                self._completion.set_result(None)
 
-    async def _wants_respawn(self, context: LaunchContext) -> bool:
-        assert self._shutdown_asked is not None
-        if not self._respawn or self._respawns_left == 0 or context.is_shutdown:
+    async def _should_respawn(self, context: LaunchContext) -> bool:
+        assert self._shutdown_requested is not None
+        if not self._respawn or self._remaining_respawns == 0 or context.is_shutdown:
             return False
-        self._respawns_left -= 1
-        await asyncio.wait([self._shutdown_asked], timeout=self._respawn_delay)
-        return not self._shutdown_asked.done()
+        self._remaining_respawns -= 1
+        await asyncio.wait([self._shutdown_requested], timeout=self._respawn_delay)
+        return not self._shutdown_requested.done()
 
     async def _run_once(self, context: LaunchContext) -> bool:
         """Run the process once; return whether it could be started."""
@@ -232,11 +232,11 @@ class ExecuteLocal(Action):
                 cwd=description.final_cwd,
                 env=description.final_env,
                 shell=self.shell,
-                emulate_tty=self._wants_tty(context),
+                emulate_tty=self._emulates_tty(context),
             )
         except (OSError, ValueError) as error:
-            what = "".join(traceback.format_exception_only(error)).rstrip()
-            self._logger.error("exception occurred while executing process:\n%s", what)
+            reason = "".join(traceback.format_exception_only(error)).rstrip()
+            self._logger.error("exception occurred while executing process:\n%s", reason)
             return False
         try:
             self._child = child
@@ -259,21 +259,21 @@ class ExecuteLocal(Action):
         return True
 
     async def _wait_or_end(self, context: LaunchContext, child: ChildProcess) -> None:
-        """Wait until the process has exited; when it is asked to end, see to it."""
-        assert self._shutdown_asked is not None
-        either: list[asyncio.Future[Any]] = [child.exited, self._shutdown_asked]
-        await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
+        """Wait until the process has exited; end it when its shutdown is requested."""
+        assert self._shutdown_requested is not None
+        exit_or_request: list[asyncio.Future[Any]] = [child.exited, self._shutdown_requested]
+        await asyncio.wait(exit_or_request, return_when=asyncio.FIRST_COMPLETED)
         if child.exited.done():
             return
-        first = float(perform_substitutions(context, self.sigterm_timeout))
-        second = float(perform_substitutions(context, self.sigkill_timeout))
-        if self._shutdown_asked.result():
-            child.send_signal(signal.SIGINT)  # quietly: with the real launch the terminal sends it
+        sigterm_seconds = float(perform_substitutions(context, self.sigterm_timeout))
+        sigkill_seconds = float(perform_substitutions(context, self.sigkill_timeout))
+        if self._shutdown_requested.result():
+            child.send_signal(signal.SIGINT)  # not logged, because with the real launch the terminal sends it
         else:
             self._emit_signal(context, signal.SIGINT)
-        for seconds, shown, previous, number in (
-            (first, first, signal.SIGINT, signal.SIGTERM),
-            (second, first + second, signal.SIGTERM, signal.SIGKILL),
+        for seconds, total_seconds, previous_signal, next_signal in (
+            (sigterm_seconds, sigterm_seconds, signal.SIGINT, signal.SIGTERM),
+            (sigkill_seconds, sigterm_seconds + sigkill_seconds, signal.SIGTERM, signal.SIGKILL),
         ):
             await asyncio.wait([child.exited], timeout=seconds)
             if child.exited.done():
@@ -281,13 +281,13 @@ class ExecuteLocal(Action):
             self._logger.error(
                 "process[%s] failed to terminate '%g' seconds after receiving '%s', escalating to '%s'",
                 self.process_description.final_name,
-                shown,
-                previous.name,
-                number.name,
+                total_seconds,
+                previous_signal.name,
+                next_signal.name,
             )
-            self._emit_signal(context, number)
+            self._emit_signal(context, next_signal)
 
-    def _wants_tty(self, context: LaunchContext) -> bool:
+    def _emulates_tty(self, context: LaunchContext) -> bool:
         if "emulate_tty" not in context.launch_configurations:
             return self.emulate_tty
         value = context.launch_configurations["emulate_tty"]

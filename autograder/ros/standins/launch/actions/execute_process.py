@@ -11,7 +11,7 @@ from .execute_local import ExecuteLocal
 
 
 class ExecuteProcess(ExecuteLocal):
-    """Runs a command; see `ExecuteLocal` for what happens to its process, `Executable` for its description."""
+    """Runs a command; see `ExecuteLocal` for its process and `Executable` for its description."""
 
     def __init__(
         self,
@@ -29,17 +29,17 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def cmd(self) -> list[list[Substitution]]:
-        """The command, or what of it is known before the process starts."""
+        """The command, with its substitutions."""
         return self.process_description.cmd
 
     @property
     def cwd(self) -> list[Substitution] | None:
-        """The folder to run in."""
+        """The working directory."""
         return self.process_description.cwd
 
     @property
     def env(self) -> list[tuple[list[Substitution], list[Substitution]]] | None:
-        """The environment, if it is not the inherited one."""
+        """The environment, or None if the process inherits it."""
         return self.process_description.env
 
     @property

@@ -1,4 +1,4 @@
-"""Actions on the launch itself: say something, emit an event, handle events, shut down."""
+"""Actions on the launch itself: log a message, emit an event, handle events, shut down."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from ..substitution import (
 
 
 class LogInfo(Action):
-    """Writes a message."""
+    """Logs a message."""
 
     def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.msg = normalize_to_list_of_substitutions(msg)
 
     def execute(self, context: LaunchContext) -> None:
-        """Write it."""
+        """Log the message."""
         get_logger("launch.user").info("%s", perform_substitutions(context, self.msg))
 
 
@@ -40,7 +40,7 @@ class EmitEvent(Action):
         self.event = event
 
     def execute(self, context: LaunchContext) -> None:
-        """Emit it."""
+        """Emit the event."""
         context.emit_event_sync(self.event)
 
 
@@ -52,7 +52,7 @@ class Shutdown(EmitEvent):
         self._reason = normalize_to_list_of_substitutions(reason)
 
     def execute(self, context: LaunchContext) -> None:
-        """End it; say so if it is because a process has exited."""
+        """End the launch; log the name of a process whose exit caused it."""
         event = context.get_locals_as_dict().get("event")
         if isinstance(event, ProcessExited):
             get_logger("launch").info("process[%s] was required: shutting down launched system", event.process_name)
@@ -68,11 +68,11 @@ class RegisterEventHandler(Action):
         self.event_handler = event_handler
 
     def execute(self, context: LaunchContext) -> None:
-        """Register it."""
+        """Register the event handler."""
         context.register_event_handler(self.event_handler)
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return what the handler yields when the event occurs."""
+        """Return the entities that the handler returns when the event occurs."""
         description, entities = self.event_handler.describe()
         return [(description, entities)] if entities else []
 
@@ -85,5 +85,5 @@ class UnregisterEventHandler(Action):
         self.event_handler = event_handler
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove it."""
+        """Remove the event handler."""
         context.unregister_event_handler(self.event_handler)

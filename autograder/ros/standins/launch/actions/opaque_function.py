@@ -1,4 +1,4 @@
-"""Actions that call Python: a function, or a coroutine that runs beside the launch."""
+"""Actions that call Python code: a function, or a coroutine that runs concurrently with the launch."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable, Coroutine, Iterable, Mapping
 from typing import Any
 
 from .._launch_event_handlers import OnShutdown
-from ..action import Action, the_loop
+from ..action import Action, running_loop
 from ..event import Event
 from ..launch_context import LaunchContext
 from ..launch_description_entity import OptionalEntities
@@ -38,7 +38,7 @@ class OpaqueFunction(Action):
 
 
 class OpaqueCoroutine(Action):
-    """Runs a coroutine function with the context; the end of the launch cancels it, unless told otherwise."""
+    """Runs a coroutine function, with the context unless `ignore_context` is set; the end of the launch cancels it."""
 
     def __init__(
         self,
@@ -56,21 +56,21 @@ class OpaqueCoroutine(Action):
         self._args = tuple(args or ())
         self._kwargs = dict(kwargs or {})
         self._ignore_context = ignore_context
-        self._done: asyncio.Future[None] | None = None
+        self._task: asyncio.Future[None] | None = None
 
     def execute(self, context: LaunchContext) -> None:
-        """Start the coroutine, unless the launch is ending already."""
+        """Start the coroutine, unless the launch is already shutting down."""
         if context.is_shutdown:
             return
         arguments = self._args if self._ignore_context else (context, *self._args)
-        task = the_loop(context).create_task(self._coroutine(*arguments, **self._kwargs))
+        task = running_loop(context).create_task(self._coroutine(*arguments, **self._kwargs))
 
         def cancel(event: Event, context: LaunchContext) -> None:
             task.cancel()
 
         context.register_event_handler(OnShutdown(on_shutdown=cancel))
-        self._done = task
+        self._task = task
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
         """Return the future that is done when the coroutine is."""
-        return self._done
+        return self._task

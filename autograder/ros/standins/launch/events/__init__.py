@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..event import Event
 from ..launch_description_entity import LaunchDescriptionEntity
@@ -21,7 +21,7 @@ __all__ = [
 
 
 class Shutdown(Event):
-    """The launch is to end, with everything it started."""
+    """A request to end the launch and all its processes."""
 
     name = "launch.events.Shutdown"
 
@@ -31,7 +31,7 @@ class Shutdown(Event):
 
 
 class ExecutionComplete(Event):
-    """An action has been executed, and what it waits for is done."""
+    """An action has been executed, and its future is done."""
 
     name = "launch.events.ExecutionComplete"
 
@@ -40,7 +40,7 @@ class ExecutionComplete(Event):
 
 
 class IncludeLaunchDescription(Event):
-    """A launch description is to be executed."""
+    """A request to execute a launch description."""
 
     name = "launch.events.IncludeLaunchDescription"
 
@@ -49,7 +49,7 @@ class IncludeLaunchDescription(Event):
 
 
 class TimerEvent(Event):
-    """The time of a timer action is up."""
+    """The period of a timer action is over."""
 
     name = "launch.events.TimerEvent"
 
@@ -57,4 +57,4 @@ class TimerEvent(Event):
         self.timer_action = timer_action
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

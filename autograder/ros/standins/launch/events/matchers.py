@@ -1,4 +1,4 @@
-"""Matchers that say which action an event is meant for."""
+"""Matchers for the action of an event."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from ..launch_description_entity import LaunchDescriptionEntity
 
 
 def matches_action(target_action: LaunchDescriptionEntity) -> Callable[[object], bool]:
-    """Return a matcher that is true of `target_action` only."""
+    """Return a matcher that is true only for `target_action`."""
     return lambda action: action is target_action

@@ -1,4 +1,4 @@
-"""The events of processes: what happened to one, and what is to be done with one."""
+"""The events of processes: reports of what happened to one, and requests to shut one down or to signal it."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import signal
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..event import Event
 
 
 class ProcessAction(Protocol):
-    """What the events need of the action that runs a process; `launch.actions.ExecuteLocal` is one."""
+    """The part of the action of a process that the events use; `launch.actions.ExecuteLocal` is one."""
 
     @property
     def process_details(self) -> dict[str, Any] | None:
@@ -23,7 +23,7 @@ ProcessMatcher = Callable[[ProcessAction], bool]
 
 
 class RunningProcessEvent(Event):
-    """Something that happened to a process; it carries the process's details."""
+    """The base of events that report what happened to a process, with the details of the process."""
 
     name = "launch.events.process.RunningProcessEvent"
 
@@ -46,7 +46,7 @@ class RunningProcessEvent(Event):
 
     @property
     def execute_process_action(self) -> ProcessAction:
-        """The action that runs the process (an older name of `action`)."""
+        """The action that runs the process; an older name of `action`."""
         return self.action
 
 
@@ -67,7 +67,7 @@ class ProcessExited(RunningProcessEvent):
 
 
 class ProcessIO(RunningProcessEvent):
-    """Bytes that went into or came out of the process."""
+    """Bytes that were written to or read from the process."""
 
     name = "launch.events.process.ProcessIO"
     from_stdin = False
@@ -102,7 +102,7 @@ class ProcessStderr(ProcessIO):
 
 
 class ProcessTargetedEvent(Event):
-    """Something to be done with the processes that `process_matcher` is true of."""
+    """The base of requests for all processes for which `process_matcher` is true."""
 
     name = "launch.events.process.ProcessTargetedEvent"
 
@@ -111,13 +111,13 @@ class ProcessTargetedEvent(Event):
 
 
 class ShutdownProcess(ProcessTargetedEvent):
-    """Such a process is to be shut down: SIGINT, then SIGTERM, then SIGKILL."""
+    """A request to shut a process down by SIGINT, then SIGTERM, then SIGKILL."""
 
     name = "launch.events.process.ShutdownProcess"
 
 
 class SignalProcess(ProcessTargetedEvent):
-    """Such a process is to get a signal, given by number or by name."""
+    """A request to send a signal, given by number or by name."""
 
     name = "launch.events.process.SignalProcess"
 
@@ -128,18 +128,18 @@ class SignalProcess(ProcessTargetedEvent):
 
 
 def matches_pid(pid: int) -> ProcessMatcher:
-    """Return a matcher for the process with that process id."""
+    """Return a matcher for the process with this process id."""
     return lambda action: (action.process_details or {}).get("pid") == pid
 
 
 def matches_name(name: str) -> ProcessMatcher:
-    """Return a matcher for processes with that name, e.g. ``talker-1``."""
+    """Return a matcher for processes with this name, such as ``talker-1``."""
     return lambda action: (action.process_details or {}).get("name") == name
 
 
 def matches_executable(executable: str) -> ProcessMatcher:
-    """Return a matcher for processes whose command starts with that executable."""
+    """Return a matcher for processes whose command starts with this executable."""
     return lambda action: (action.process_details or {}).get("cmd", [None])[0] == executable
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

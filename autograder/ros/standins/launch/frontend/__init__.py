@@ -1,8 +1,8 @@
-"""Launch files in XML and YAML: `launch_xml` and `launch_yaml` read the files, this package makes actions of them."""
+"""Launch files in XML and YAML: `launch_xml` and `launch_yaml` read the files, this package creates the actions."""
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..utilities import type_utils
 from .entity import Entity
@@ -21,4 +21,4 @@ __all__ = [
     "type_utils",
 ]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -5,46 +5,46 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 
 class Entity(ABC):
-    """An element with a type, attributes and children; it knows which of them were read."""
+    """An element with a type, attributes and children, which records the ones that were read."""
 
     @property
     @abstractmethod
     def type_name(self) -> str:
-        """The type, e.g. ``node``."""
+        """The type, for example ``node``."""
 
     @property
     @abstractmethod
     def parent(self) -> Entity | None:
-        """The element in which this one is."""
+        """The element that contains this one."""
 
     @property
     @abstractmethod
     def children(self) -> list[Entity]:
-        """The elements in this one."""
+        """The elements that this one contains."""
 
     @abstractmethod
     def assert_entity_completely_parsed(self) -> None:
-        """Raise ValueError if an attribute or a child was not read: nobody knows what it means."""
+        """Raise ValueError if an attribute or a child was not read, because the action does not have it."""
 
     @abstractmethod
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
         """Return an attribute.
 
         Args:
-            name: its name.
+            name: the name of the attribute.
             data_type: `str`, `int`, `float`, `bool`, a list of one of these, `list[Entity]` for the children of that
-                name, or None for YAML's own rules.
+                name, or None for YAML's rules.
             optional: return None if the attribute is missing.
-            can_be_str: return text that is not of the type as it is; a substitution may be in it.
+            can_be_str: return text that does not have the type unchanged, as it may contain a substitution.
 
         Raises:
             AttributeError: the attribute is missing.
-            TypeError: it is not of the type.
+            TypeError: it does not have the type.
         """
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

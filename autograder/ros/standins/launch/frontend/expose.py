@@ -1,4 +1,4 @@
-"""The names that actions and substitutions have in XML and YAML launch files."""
+"""The names of actions and substitutions in XML and YAML launch files."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ substitution_parse_methods: dict[str, Parse] = {}
 
 
 def instantiate_action(entity: Entity, parser: Parser) -> Action:
-    """Return the action that an element describes; RuntimeError for an unknown type."""
+    """Return the action that an element describes; raise RuntimeError for an unknown type."""
     if entity.type_name not in action_parse_methods:
         raise RuntimeError(f"Unrecognized entity of the type: {entity.type_name}")
-    make, arguments = action_parse_methods[entity.type_name](entity, parser)
-    action: Action = make(**arguments)
+    factory, arguments = action_parse_methods[entity.type_name](entity, parser)
+    action: Action = factory(**arguments)
     return action
 
 
 def instantiate_substitution(type_name: str, arguments: Sequence[Sequence[Substitution]] = ()) -> Substitution:
-    """Return the substitution of that name with its arguments; RuntimeError for an unknown name."""
+    """Return the substitution with this name and its arguments; raise RuntimeError for an unknown name."""
     if type_name not in substitution_parse_methods:
         raise RuntimeError(f"Unknown substitution: {type_name}")
-    make, keywords = substitution_parse_methods[type_name](arguments)
-    substitution: Substitution = make(**keywords)
+    factory, keywords = substitution_parse_methods[type_name](arguments)
+    substitution: Substitution = factory(**keywords)
     return substitution
 
 
 def expose_action(name: str) -> Callable[[Exposed], Exposed]:
-    """Return the decorator that gives a class of actions, or a function that parses one, its name in launch files.
+    """Return a decorator that registers a class of actions, or a function that parses one, by its name in launch files.
 
     The decorator raises RuntimeError if a class has no class method `parse`, or if the name is taken.
     """
@@ -49,19 +49,19 @@ def expose_action(name: str) -> Callable[[Exposed], Exposed]:
         parse = _parse_method(exposed, "action", name)
 
         @functools.wraps(parse)
-        def whole(entity: Entity, parser: Parser) -> Any:
+        def parse_completely(entity: Entity, parser: Parser) -> Any:
             parsed = parse(entity, parser)
             entity.assert_entity_completely_parsed()
             return parsed
 
-        _add(action_parse_methods, name, whole, "action")
+        _add(action_parse_methods, name, parse_completely, "action")
         return exposed
 
     return expose
 
 
 def expose_substitution(name: str) -> Callable[[Exposed], Exposed]:
-    """Return the decorator that gives a class of substitutions, or a function that parses one, its name in text.
+    """Return a decorator that registers a class of substitutions, or a function that parses one, by its name in text.
 
     The decorator raises RuntimeError if a class has no class method `parse`, or if the name is taken.
     """

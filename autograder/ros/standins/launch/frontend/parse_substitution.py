@@ -1,8 +1,8 @@
 """Substitutions written in text, such as ``$(find-pkg-share my_package)/config``.
 
-The grammar is that of Jazzy's `launch.frontend`: ``$(name argument argument)``, where one space separates arguments.
-An argument is plain text, a substitution, a row of both, or text in quotes, in which spaces are text. A backslash
-makes the character behind it text.
+The grammar is that of Jazzy's `launch.frontend`: ``$(name argument argument)``, with one space between arguments.
+An argument is plain text, a substitution, a sequence of both, or text in quotes, which may contain spaces. A backslash
+makes the next character plain text.
 """
 
 from __future__ import annotations
@@ -10,36 +10,36 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..substitution import Substitution, TextSubstitution
 from .expose import instantiate_substitution
 
-_MARKS = "'\""
+_QUOTES = "'\""
 _NAME = re.compile(r"\$\(([A-Za-z][\w-]*)", re.ASCII)
 
 
 class SubstitutionSyntaxError(ValueError):
-    """A substitution has no end, or something stands in it that does not belong there."""
+    """A substitution has no end, or contains a character that is not allowed."""
 
 
 def replace_escaped_characters(data: str) -> str:
-    """Return the text without the backslashes that make the characters behind them plain text."""
+    """Return the text without the backslashes that escape characters."""
     return re.sub(r"\\(.)", r"\1", data)
 
 
 def parse_substitution(string_value: str) -> list[Substitution]:
     """Return the parts of a text: plain text and substitutions.
 
-    Raises SubstitutionSyntaxError for a substitution that cannot be read, RuntimeError for an unknown one.
+    Raises SubstitutionSyntaxError for a substitution that cannot be parsed, and RuntimeError for an unknown one.
     """
     return _Reader(string_value).parts() or [TextSubstitution(text="")]
 
 
 def parse_if_substitutions(value: Any) -> Any:
-    """Return a value in which texts that hold substitutions are parsed; lists item by item, other values as they are.
+    """Return a value with its texts parsed if they contain substitutions; values that are not text stay unchanged.
 
-    Raises ValueError if the items of a list are of several types.
+    Raises ValueError if the items of a list have different types.
     """
     if isinstance(value, list):
         items = [parse_if_substitutions(item) for item in value]
@@ -64,12 +64,12 @@ class _Reader:
         """Read text and substitutions up to one of the characters `stops`.
 
         Args:
-            stops: the characters that end the parts; none of them ends a substitution.
-            quote: the quotation mark inside of which the parts are, if any.
+            stops: the characters that end the parts; inside a substitution they do not.
+            quote: the quotation mark around the parts, if there is one.
         """
         parts: list[Substitution] = []
         while self._at_substitution() or self._at_text(stops):
-            parts.append(self._substitution(quote) if self._at_substitution() else self._plain(stops))
+            parts.append(self._substitution(quote) if self._at_substitution() else self._plain_text(stops))
         return parts
 
     def _substitution(self, quote: str) -> Substitution:
@@ -86,19 +86,19 @@ class _Reader:
         return instantiate_substitution(name[1], arguments)
 
     def _argument(self, quote: str, start: int) -> list[Substitution]:
-        """Read an argument; inside of quotation marks it has none of its own, so that the others are text."""
-        for mark in _MARKS if not quote else "":
+        """Read an argument; inside quotation marks, other quotation marks are text."""
+        for mark in _QUOTES if not quote else "":
             if self._skip(mark):
                 quoted = self.parts(mark, mark)
                 if not self._skip(mark):
                     raise self._error(start)
                 return quoted
-        parts = self.parts(" ()" + (quote or _MARKS), quote)
+        parts = self.parts(" ()" + (quote or _QUOTES), quote)
         if not parts:
             raise self._error(start)
         return parts
 
-    def _plain(self, stops: str) -> Substitution:
+    def _plain_text(self, stops: str) -> Substitution:
         start = self.position
         while self._at_text(stops):
             self.position += 2 if self.text[self.position] == "\\" else 1
@@ -108,18 +108,18 @@ class _Reader:
         return self.text.startswith("$(", self.position)
 
     def _at_text(self, stops: str) -> bool:
-        ended = self.position >= len(self.text)
-        return not ended and self.text[self.position] not in stops and not self._at_substitution()
+        is_at_end = self.position >= len(self.text)
+        return not is_at_end and self.text[self.position] not in stops and not self._at_substitution()
 
     def _skip(self, character: str) -> bool:
-        """Go past a character if it is the next one."""
-        found = self.text.startswith(character, self.position)
-        self.position += found
-        return found
+        """Skip a character if it is the next one; return whether it was."""
+        is_next = self.text.startswith(character, self.position)
+        self.position += is_next
+        return is_next
 
     def _error(self, start: int) -> SubstitutionSyntaxError:
         line = self.text[start:].partition("\n")[0]
         return SubstitutionSyntaxError(f"this substitution has no end or cannot be read: {line}")
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

@@ -1,4 +1,4 @@
-"""The base of the parsers of launch files, and what finds the one for a file."""
+"""The base class of the parsers of launch files, and the choice of the parser for a file."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .parse_substitution import parse_if_substitutions, parse_substitution, repl
 
 
 class InvalidFrontendLaunchFileError(InvalidLaunchFileError):
-    """A launch file in XML or YAML could not be read; the text lists what went wrong."""
+    """A launch file in XML or YAML could not be read; the message lists the errors."""
 
 
 class Parser:
-    """Makes actions of elements; a parser of a format, such as `launch_xml.Parser`, overrides `load`.
+    """Creates actions from elements; the parser of a format, such as `launch_xml.Parser`, overrides `load`.
 
-    Formats and further actions come from other packages: from their entry points of the groups
-    ``launch.frontend.parser`` and ``launch.frontend.launch_extension``.
+    Other packages add formats and actions by the entry points ``launch.frontend.parser`` and
+    ``launch.frontend.launch_extension``.
     """
 
     frontend_parsers: ClassVar[dict[str, type[Parser]] | None] = None
@@ -33,18 +33,18 @@ class Parser:
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import what gives actions and substitutions their names."""
+        """Import the packages that register actions and substitutions."""
         if not Parser.extensions_loaded:
             Parser.extensions_loaded = True
             for point in entry_points(group="launch.frontend.launch_extension"):
-                _loaded(point)
+                _load_entry_point(point)
 
     @classmethod
     def load_parser_implementations(cls) -> dict[str, type[Parser]]:
-        """Return the parsers of all formats by the formats' names."""
+        """Return the parsers of all formats, by the names of the formats."""
         if Parser.frontend_parsers is None:
-            found = {point.name: _loaded(point) for point in entry_points(group="launch.frontend.parser")}
-            Parser.frontend_parsers = {name: parser for name, parser in sorted(found.items()) if parser is not None}
+            parsers = {point.name: _load_entry_point(point) for point in entry_points(group="launch.frontend.parser")}
+            Parser.frontend_parsers = {name: parser for name, parser in sorted(parsers.items()) if parser is not None}
         return Parser.frontend_parsers
 
     @classmethod
@@ -54,36 +54,38 @@ class Parser:
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the endings of this format's files, without the leading dot."""
+        """Return the file extensions of this format, without the leading dot."""
         return set()
 
     @classmethod
     def get_file_extensions_from_parsers(cls) -> set[str]:
-        """Return the endings of all formats' files."""
+        """Return the file extensions of all formats."""
         return {
-            ending for parser in cls.load_parser_implementations().values() for ending in parser.get_file_extensions()
+            extension
+            for parser in cls.load_parser_implementations().values()
+            for extension in parser.get_file_extensions()
         }
 
     @classmethod
     def may_parse(cls, filename: str) -> bool:
-        """Whether a file's name has an ending of this format."""
-        return any(filename.endswith(f".{ending}") for ending in cls.get_file_extensions())
+        """Return whether a file's name has an extension of this format."""
+        return any(filename.endswith(f".{extension}") for extension in cls.get_file_extensions())
 
     @classmethod
     def get_parsers_from_filename(cls, filename: str) -> list[type[Parser]]:
-        """Return the parsers to whose format a file's name belongs."""
+        """Return the parsers of the formats that match a file's name."""
         return [parser for parser in cls.load_parser_implementations().values() if parser.may_parse(filename)]
 
     @classmethod
     def is_filename_valid(cls, filename: str) -> bool:
-        """Whether a file's name belongs to any format."""
+        """Return whether a file's name matches any format."""
         return bool(cls.get_parsers_from_filename(filename))
 
     @classmethod
     def load(cls, file: str | os.PathLike[str] | TextIO) -> tuple[Entity, Parser]:
-        """Return the root element of a launch file and its parser: that of its ending, or the first that can read it.
+        """Return the root element of a launch file and its parser, by its extension or else the first that can read it.
 
-        Raises InvalidFrontendLaunchFileError if none can, OSError if the file cannot be opened.
+        Raises InvalidFrontendLaunchFileError if no parser can read it, and OSError if the file cannot be opened.
         """
         if isinstance(file, (str, os.PathLike)):
             with Path(file).open(encoding="utf-8") as opened:
@@ -111,15 +113,15 @@ class Parser:
         return parse_substitution(value)
 
     def parse_if_substitutions(self, value: Any) -> Any:
-        """Return a value in which texts that hold substitutions are parsed."""
+        """Return a value with its texts parsed if they contain substitutions."""
         return parse_if_substitutions(value)
 
     def escape_characters(self, value: str) -> str:
-        """Return the text without the backslashes that make the characters behind them plain text."""
+        """Return the text without the backslashes that escape characters."""
         return replace_escaped_characters(value)
 
     def parse_description(self, entity: Entity) -> LaunchDescription:
-        """Return the launch description of a root element; RuntimeError unless it is ``launch``."""
+        """Return the launch description of a root element; raise RuntimeError unless it is ``launch``."""
         if entity.type_name != "launch":
             raise RuntimeError("Expected 'launch' as root tag")
         deprecated = entity.get_attr("deprecated", optional=True)
@@ -127,8 +129,8 @@ class Parser:
         return LaunchDescription(actions, deprecated_reason=deprecated)
 
 
-def _loaded(point: EntryPoint) -> Any:
-    """Return what an entry point names; None, with a warning, if it cannot be imported."""
+def _load_entry_point(point: EntryPoint) -> Any:
+    """Return the object of an entry point, or None with a warning if it cannot be imported."""
     try:
         return point.load()
     except Exception as error:

@@ -1,4 +1,4 @@
-"""The types that attributes of launch files may have."""
+"""The types of attributes in launch files."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _TYPES: dict[str, Any] = {
 
 
 def check_is_list_entity(data_type: Any) -> bool:
-    """Whether the type is a list of elements."""
+    """Return whether the type is a list of elements."""
     return get_origin(data_type) is list and issubclass(get_args(data_type)[0], Entity)
 
 
 def get_data_type_from_identifier(type_identifier: str) -> Any:
-    """Return the type of that name, None for ``yaml``; ValueError for another name."""
+    """Return the type of an identifier, None for ``yaml``; raise ValueError for an unknown one."""
     if type_identifier not in _TYPES:
         raise ValueError(f"Got invalid type identifier '{type_identifier}'")
     return _TYPES[type_identifier]

@@ -8,7 +8,7 @@ from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..exceptions import InvalidLaunchFileError, InvalidPythonLaunchFileError
 from ..frontend import InvalidFrontendLaunchFileError, Parser
@@ -31,7 +31,7 @@ __all__ = [
 
 
 class _UncachedLoader(SourceFileLoader):
-    """The loader of the real launch, which here reads a file anew each time and leaves no compiled file behind."""
+    """The loader of the real launch, except that it reads a file each time and writes no compiled file."""
 
     def get_code(self, fullname: str) -> types.CodeType:
         code: types.CodeType = self.source_to_code(self.get_data(self.path), self.path)
@@ -39,7 +39,7 @@ class _UncachedLoader(SourceFileLoader):
 
 
 def load_python_launch_file_as_module(python_launch_file_path: str) -> types.ModuleType:
-    """Return the launch file as a module. As in the real launch, `sys.modules` does not have it."""
+    """Return the launch file as a module. As in the real launch, it is not added to `sys.modules`."""
     loader = _UncachedLoader("python_launch_file", str(python_launch_file_path))
     spec = spec_from_loader(loader.name, loader)
     if spec is None:
@@ -50,9 +50,9 @@ def load_python_launch_file_as_module(python_launch_file_path: str) -> types.Mod
 
 
 def get_launch_description_from_python_launch_file(python_launch_file_path: str) -> LaunchDescription:
-    """Return what `generate_launch_description` of the launch file returns.
+    """Return the launch description that `generate_launch_description` of the launch file returns.
 
-    Raises InvalidPythonLaunchFileError if there is no such function or it returns something else.
+    Raises InvalidPythonLaunchFileError without such a function, or if it returns another type.
     """
     module = load_python_launch_file_as_module(python_launch_file_path)
     generate = getattr(module, "generate_launch_description", None)
@@ -73,16 +73,15 @@ def get_launch_description_from_python_launch_file(python_launch_file_path: str)
 def get_launch_description_from_frontend_launch_file(
     frontend_launch_file_path: str, *, parser: type[Parser] = Parser
 ) -> LaunchDescription:
-    """Return the launch description of a launch file in XML or YAML; the parser's errors pass through."""
-    root, found = parser.load(frontend_launch_file_path)
-    return found.parse_description(root)
+    """Return the launch description of a launch file in XML or YAML; errors of the parser are not caught."""
+    root, root_parser = parser.load(frontend_launch_file_path)
+    return root_parser.parse_description(root)
 
 
 def get_launch_description_from_any_launch_file(launch_file_path: str) -> LaunchDescription:
-    """Return the launch description of a launch file: of Python if it ends in ``.py``, else of XML or YAML.
+    """Return the launch description of a launch file: in Python if it ends in ``.py``, otherwise in XML or YAML.
 
-    Whatever its ending says, the other formats are tried, too. Raises InvalidLaunchFileError that names what went
-    wrong in each.
+    If that fails, the other formats are tried, too. Raises InvalidLaunchFileError with the errors of all formats.
     """
     extension = Path(launch_file_path).suffix.removeprefix(".")
     loaders: list[Callable[[str], LaunchDescription]]
@@ -129,7 +128,7 @@ class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """The launch description of a launch file of any kind."""
+    """The launch description of a launch file in any format."""
 
     def __init__(self, launch_file_path: SomeSubstitutionsType) -> None:
         super().__init__(
@@ -139,4 +138,4 @@ class AnyLaunchDescriptionSource(LaunchDescriptionSource):
         )
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

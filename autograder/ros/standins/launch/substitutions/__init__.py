@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..exceptions import SubstitutionFailure
 from ..substitution import TextSubstitution
@@ -54,4 +54,4 @@ __all__ = [
     "ThisLaunchFileDir",
 ]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

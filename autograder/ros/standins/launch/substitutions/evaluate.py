@@ -1,4 +1,4 @@
-"""Substitutions that work something out: expressions, commands, paths, files."""
+"""Substitutions that evaluate an expression, run a command, or look up a program or a file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..substitution import (
 class PythonExpression(Substitution):
     """The value of a Python expression, whose parts may be substitutions.
 
-    The names of `math` are there, and further modules by their own names.
+    It can use all names of `math` if that is one of `python_modules`, and each of these modules by its name.
     """
 
     def __init__(self, expression: SomeSubstitutionsType, python_modules: SomeSubstitutionsType = ("math",)) -> None:
@@ -36,7 +36,7 @@ class PythonExpression(Substitution):
         return f"PythonExpr({describe_substitutions(self.expression)}, [{modules}])"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the value as text; the expression's own errors pass through."""
+        """Return the value as text; errors of the expression are not caught."""
         names: dict[str, Any] = {}
         for substitution in self.python_modules:
             module = importlib.import_module(context.perform_substitution(substitution))
@@ -47,7 +47,7 @@ class PythonExpression(Substitution):
 
 
 class Command(Substitution):
-    """What a command prints; by default anything on its standard error is a failure."""
+    """The standard output of a command; by default, any output on standard error is a failure."""
 
     def __init__(self, command: SomeSubstitutionsType, *, on_stderr: SomeSubstitutionsType = "fail") -> None:
         self.command = normalize_to_list_of_substitutions(command)
@@ -58,7 +58,7 @@ class Command(Substitution):
         return f"Command({describe_substitutions(self.command)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the standard output; SubstitutionFailure if the command is missing or fails."""
+        """Return the standard output; raise SubstitutionFailure if the command is missing or fails."""
         command = perform_substitutions(context, self.command)
         on_stderr = perform_substitutions(context, self.on_stderr)
         if on_stderr not in ("fail", "ignore", "warn", "capture"):
@@ -69,8 +69,8 @@ class Command(Substitution):
         except FileNotFoundError as error:
             raise SubstitutionFailure(f"file not found: {error}") from error
         if result.returncode != 0:
-            shown = f"\nCaptured stderr output: {result.stderr}" if result.stderr else ""
-            raise SubstitutionFailure(f"executed command failed. Command: {command}{shown}")
+            details = f"\nCaptured stderr output: {result.stderr}" if result.stderr else ""
+            raise SubstitutionFailure(f"executed command failed. Command: {command}{details}")
         if result.stderr and on_stderr in ("fail", "warn"):
             message = (
                 f"executed command showed stderr output. Command: {command}\nCaptured stderr output:\n{result.stderr}"
@@ -84,7 +84,7 @@ class Command(Substitution):
 
 
 class FindExecutable(Substitution):
-    """The path of an executable that is on the PATH."""
+    """The path of an executable on the PATH."""
 
     def __init__(self, *, name: SomeSubstitutionsType) -> None:
         self.name = normalize_to_list_of_substitutions(name)
@@ -94,16 +94,16 @@ class FindExecutable(Substitution):
         return f"FindExec({describe_substitutions(self.name)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the path; SubstitutionFailure if there is none."""
+        """Return the path; raise SubstitutionFailure without such an executable."""
         name = perform_substitutions(context, self.name)
-        found = shutil.which(name)
-        if found is None:
+        path = shutil.which(name)
+        if path is None:
             raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
-        return found
+        return path
 
 
 class FileContent(Substitution):
-    """What is in a text file."""
+    """The content of a text file."""
 
     def __init__(self, path: SomeSubstitutionsType) -> None:
         self.path = normalize_to_list_of_substitutions(path)
@@ -113,7 +113,7 @@ class FileContent(Substitution):
         return f"FileContent({describe_substitutions(self.path)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the content; SubstitutionFailure if the file cannot be read."""
+        """Return the content; raise SubstitutionFailure if the file cannot be read."""
         path = perform_substitutions(context, self.path)
         try:
             return Path(path).read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Substitutions that decide: not, and, or, any, all, equality, choice; they say ``true`` or ``false``."""
+"""Logical substitutions: not, and, or, any, all and comparisons, with the text ``true`` or ``false``, and a choice."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ class NotSubstitution(Substitution):
         return _text(not _truth(context, self.value))
 
 
-class _Many(Substitution):
-    """Truth over several values."""
+class _Logical(Substitution):
+    """The base of substitutions that combine several truth values."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
         self.args = [normalize_to_list_of_substitutions(arg) for arg in args]
@@ -55,16 +55,16 @@ class _Many(Substitution):
         return f"{type(self).__name__}({' '.join(describe_substitutions(arg) for arg in self.args)})"
 
 
-class AnySubstitution(_Many):
-    """True if at least one value is."""
+class AnySubstitution(_Logical):
+    """True if at least one value is true."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return whether one of the values is true; all of them are performed."""
         return _text(any([_truth(context, arg) for arg in self.args]))
 
 
-class AllSubstitution(_Many):
-    """True if all values are."""
+class AllSubstitution(_Logical):
+    """True if all values are true."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return whether all of the values are true; all of them are performed."""
@@ -72,7 +72,7 @@ class AllSubstitution(_Many):
 
 
 class AndSubstitution(AllSubstitution):
-    """True if both values are."""
+    """True if both values are true."""
 
     def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
         super().__init__(left, right)
@@ -80,7 +80,7 @@ class AndSubstitution(AllSubstitution):
 
 
 class OrSubstitution(AnySubstitution):
-    """True if one of both values is."""
+    """True if at least one of two values is true."""
 
     def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
         super().__init__(left, right)
@@ -88,7 +88,7 @@ class OrSubstitution(AnySubstitution):
 
 
 def _comparable(value: Any) -> list[Substitution]:
-    """Return one side of a comparison: plain values of any type stand for their text."""
+    """Return one side of a comparison as substitutions, with plain values of any type as text."""
     if value is None:
         return normalize_to_list_of_substitutions("")
     if isinstance(value, bool):
@@ -103,11 +103,11 @@ def _comparable(value: Any) -> list[Substitution]:
     return normalize_to_list_of_substitutions(str(value))
 
 
-def _equal(left: str, right: str) -> bool:
-    """Return whether two texts are equal: as truth values, as numbers, or else letter by letter."""
-    truths = {"true": True, "1": True, "false": False, "0": False}
-    if left.lower() in truths and right.lower() in truths:
-        return truths[left.lower()] == truths[right.lower()]
+def _are_equal(left: str, right: str) -> bool:
+    """Return whether two texts are equal: as truth values, as numbers, or otherwise character by character."""
+    truth_values = {"true": True, "1": True, "false": False, "0": False}
+    if left.lower() in truth_values and right.lower() in truth_values:
+        return truth_values[left.lower()] == truth_values[right.lower()]
     try:
         return math.isclose(float(left), float(right))
     except ValueError:
@@ -126,7 +126,7 @@ class EqualsSubstitution(Substitution):
         return f"{type(self).__name__}({describe_substitutions(self.left)} {describe_substitutions(self.right)})"
 
     def _sides_are_equal(self, context: LaunchContext) -> bool:
-        return _equal(perform_substitutions(context, self.left), perform_substitutions(context, self.right))
+        return _are_equal(perform_substitutions(context, self.left), perform_substitutions(context, self.right))
 
     def perform(self, context: LaunchContext) -> str:
         """Return whether both sides are equal."""
@@ -142,7 +142,7 @@ class NotEqualsSubstitution(EqualsSubstitution):
 
 
 class IfElseSubstitution(Substitution):
-    """One of two values, by a condition."""
+    """One of two values, depending on a condition."""
 
     def __init__(
         self,
@@ -163,5 +163,5 @@ class IfElseSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value that the condition selects; the other one is not performed."""
-        chosen = self.if_value if _truth(context, self.condition) else self.else_value
-        return perform_substitutions(context, chosen)
+        value = self.if_value if _truth(context, self.condition) else self.else_value
+        return perform_substitutions(context, value)

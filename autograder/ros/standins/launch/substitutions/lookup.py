@@ -1,4 +1,4 @@
-"""Substitutions that look a value up: configurations, environment, locals, the launch file itself."""
+"""Substitutions that look up a value: in configurations, the environment, local values, or the launch file."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from ..substitution import (
 from .paths import DirectorySubstitution
 
 
-def _default(value: Any) -> list[Substitution] | None:
-    """Return a default of any type as substitutions: numbers and truth values become their text."""
+def _normalize_default(value: Any) -> list[Substitution] | None:
+    """Return a default of any type as substitutions; numbers and truth values become text."""
     if value is None:
         return None
     items = [value] if isinstance(value, (str, Substitution)) or not isinstance(value, Iterable) else value
@@ -30,18 +30,18 @@ def _default(value: Any) -> list[Substitution] | None:
 
 
 class LaunchConfiguration(Substitution):
-    """The value of a launch configuration, e.g. of a declared argument."""
+    """The value of a launch configuration, for example of a declared argument."""
 
     def __init__(self, variable_name: SomeSubstitutionsType, *, default: Any = None) -> None:
         self.variable_name = normalize_to_list_of_substitutions(variable_name)
-        self._default = _default(default)
+        self._default = _normalize_default(default)
 
     def describe(self) -> str:
         """Return a description with the name."""
         return f"LaunchConfig({describe_substitutions(self.variable_name)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the value, or the default; SubstitutionFailure without either."""
+        """Return the value, or the default; raise SubstitutionFailure without either."""
         name = perform_substitutions(context, self.variable_name)
         if name in context.launch_configurations:
             return str(context.launch_configurations[name])
@@ -55,14 +55,14 @@ class EnvironmentVariable(Substitution):
 
     def __init__(self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None) -> None:
         self.name = normalize_to_list_of_substitutions(name)
-        self.default_value = _default(default_value)
+        self.default_value = _normalize_default(default_value)
 
     def describe(self) -> str:
         """Return a description with the name."""
         return f"EnvVar({describe_substitutions(self.name)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the value, or the default; SubstitutionFailure without either."""
+        """Return the value, or the default; raise SubstitutionFailure without either."""
         name = perform_substitutions(context, self.name)
         if name in context.environment:
             return context.environment[name]
@@ -72,7 +72,7 @@ class EnvironmentVariable(Substitution):
 
 
 class LocalSubstitution(Substitution):
-    """A local value by a path of attributes and keys, e.g. ``event.returncode``."""
+    """A local value, by a path of attributes and keys such as ``event.returncode``."""
 
     _STEP = re.compile(r"\.?(?P<name>[A-Za-z_]\w*)|\[(?P<key>[^\]]+)\]")
 
@@ -85,7 +85,7 @@ class LocalSubstitution(Substitution):
         return f"LocalVar('{self.description or self.expression}')"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the value as it is, even if it is no text; SubstitutionFailure if the path leads nowhere."""
+        """Return the value, which need not be a text; raise SubstitutionFailure if the path does not exist."""
         value: Any = context.locals
         position = 0
         while position < len(self.expression):
@@ -103,8 +103,8 @@ class LocalSubstitution(Substitution):
         return cast(str, value)
 
 
-class _OfLaunchFile(Substitution):
-    """What the context knows of the launch file that is being executed."""
+class _LaunchFileLocal(Substitution):
+    """The base of substitutions with a local value of the launch file that is being executed."""
 
     local = ""
 
@@ -113,20 +113,20 @@ class _OfLaunchFile(Substitution):
         return f"{type(self).__name__}()"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the path; SubstitutionFailure outside of a launch file."""
+        """Return the path; raise SubstitutionFailure outside of a launch file."""
         try:
             return str(context.get_locals_as_dict()[self.local])
         except KeyError:
             raise SubstitutionFailure(f"{type(self).__name__} used outside of a launch file (in a script)") from None
 
 
-class ThisLaunchFile(_OfLaunchFile):
+class ThisLaunchFile(_LaunchFileLocal):
     """The path of the launch file that is being executed."""
 
     local = "current_launch_file_path"
 
 
-class ThisLaunchFileDir(_OfLaunchFile, DirectorySubstitution):
+class ThisLaunchFileDir(_LaunchFileLocal, DirectorySubstitution):
     """The folder of the launch file that is being executed."""
 
     local = "current_launch_file_directory"
@@ -145,7 +145,7 @@ class LaunchLogDir(DirectorySubstitution):
 
 
 class AnonName(Substitution):
-    """A name that is made unique, the same each time within one launch."""
+    """A unique name, which stays the same during one launch."""
 
     def __init__(self, name: SomeSubstitutionsType) -> None:
         self.name = normalize_to_list_of_substitutions(name)
@@ -155,7 +155,7 @@ class AnonName(Substitution):
         return f"AnonName({describe_substitutions(self.name)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the name with host, process id and a random number."""
+        """Return the name with the host, the process id and a random number."""
         name = perform_substitutions(context, self.name)
         key = f"anon{name}"
         if key not in context.launch_configurations:

@@ -16,15 +16,15 @@ from ..substitution import (
 
 
 class DirectorySubstitution(Substitution):
-    """The path of a folder. With ``/`` and a component it is a path in this folder, as in Jazzy since launch 3.4.5."""
+    """The path of a folder. The operator ``/`` appends a component, as in Jazzy since launch 3.4.5."""
 
     def __truediv__(self, component: SomeSubstitutionsType) -> Substitution:
-        """Return the path of what `component` names in this folder; a component may have several parts."""
+        """Return the path of `component` in this folder; a component may have several parts."""
         return PathJoinSubstitution([self, component])
 
 
 class PathJoinSubstitution(DirectorySubstitution):
-    """A path from its components, each of which is a text, a substitution, or several of them in a row."""
+    """A path made of components; each is a text, a substitution, or a list of both."""
 
     def __init__(self, substitutions: SomeSubstitutionsType | Iterable[SomeSubstitutionsType]) -> None:
         if isinstance(substitutions, (str, Substitution)):
@@ -38,11 +38,11 @@ class PathJoinSubstitution(DirectorySubstitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the joined path."""
         parts = [perform_substitutions(context, component) for component in self.substitutions]
-        return os.path.join(*parts)  # noqa: PTH118  # a Path would drop slashes and dots that belong
+        return os.path.join(*parts)  # noqa: PTH118  # a Path would drop trailing slashes and dots
 
 
 class PathSubstitution(PathJoinSubstitution):
-    """A path of one component, to be continued with ``/``."""
+    """A path of one component, to which ``/`` appends others."""
 
     def __init__(self, path: SomeSubstitutionsType) -> None:
         super().__init__([path])

@@ -1,4 +1,4 @@
-"""Values with a type: plain ones as they are, substitutions performed and read as YAML would."""
+"""Typed values: plain values are used unchanged, the texts of substitutions are parsed by YAML's rules."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, get_args, get_origin
 
 import yaml
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from ..launch_context import LaunchContext
 from ..substitution import Substitution, normalize_to_list_of_substitutions, perform_substitutions
@@ -15,7 +15,7 @@ SCALARS = (bool, int, float, str)
 
 
 def is_substitution(value: object) -> bool:
-    """Whether `value` is a substitution, or strings and at least one substitution in a row."""
+    """Return whether `value` is a substitution, or a sequence of strings and at least one substitution."""
     if isinstance(value, Substitution):
         return True
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
@@ -27,7 +27,7 @@ def is_substitution(value: object) -> bool:
 
 
 def _split_type(data_type: Any) -> tuple[type, bool]:
-    """Return the scalar type of `data_type` and whether a list of it is meant; ValueError for other types."""
+    """Return the scalar type of `data_type`, and whether it is a list; raise ValueError for other types."""
     is_list = get_origin(data_type) is list
     scalar = get_args(data_type)[0] if is_list else data_type
     if scalar not in SCALARS:
@@ -39,7 +39,7 @@ def _split_type(data_type: Any) -> tuple[type, bool]:
 
 
 def is_uniform_list(value: object) -> bool:
-    """Whether `value` is a list whose items are all truth values, all integers, all floats or all strings."""
+    """Return whether `value` is a list whose items are all truth values, all integers, all floats or all strings."""
     if not isinstance(value, (list, tuple)):
         return False
     types = {type(item) for item in value}
@@ -47,19 +47,19 @@ def is_uniform_list(value: object) -> bool:
 
 
 def coerce_to_type(text: str, data_type: Any = None) -> Any:
-    """Return `text` read as `data_type`, or by YAML's rules without one.
+    """Return `text` converted to `data_type`, or by YAML's rules without one.
 
-    Raises ValueError if it cannot be read so.
+    Raises ValueError if it cannot be converted.
     """
 
-    def as_yaml() -> Any:
+    def parse_yaml() -> Any:
         try:
             return yaml.safe_load(text)
         except yaml.YAMLError as error:
             raise ValueError(f"Failed to convert '{text}' using yaml rules: {error}") from error
 
     if data_type is None:
-        value = as_yaml()
+        value = parse_yaml()
         if not isinstance(value, SCALARS) and not is_uniform_list(value):
             raise ValueError(
                 f"Failed to convert '{text}' using yaml rules: output type is not allowed, got {type(value)}"
@@ -67,14 +67,14 @@ def coerce_to_type(text: str, data_type: Any = None) -> Any:
         return value
     scalar, is_list = _split_type(data_type)
     if is_list:
-        value = as_yaml()
+        value = parse_yaml()
         if not isinstance(value, list) or not all(type(item) is scalar for item in value):
             raise ValueError(f"Cannot convert value '{text}' to a list of '{scalar}'")
         return value
     if scalar is str:
         return text
     if scalar is bool:
-        value = {"1": True, "0": False}.get(text, as_yaml())
+        value = {"1": True, "0": False}.get(text, parse_yaml())
         if not isinstance(value, bool):
             raise ValueError(f"Cannot convert value '{text}' to '{bool}'")
         return value
@@ -82,9 +82,10 @@ def coerce_to_type(text: str, data_type: Any = None) -> Any:
 
 
 def get_typed_value(value: str | list[str], data_type: Any, *, can_be_str: bool = False) -> Any:
-    """Return a text, or each text of a list, read as `data_type`, or by YAML's rules if that is None.
+    """Return a text, or each text of a list, converted to `data_type`, or by YAML's rules if that is None.
 
-    Raises ValueError if it cannot be read so, unless it `can_be_str` as well; TypeError for a list where none is meant.
+    Raises ValueError if it cannot be converted, unless it `can_be_str`, and TypeError for a list if `data_type` is a
+    scalar type.
     """
     if isinstance(value, list):
         scalar, is_list = (None, True) if data_type is None else _split_type(data_type)
@@ -100,7 +101,7 @@ def get_typed_value(value: str | list[str], data_type: Any, *, can_be_str: bool 
 
 
 def is_instance_of(value: Any, data_type: Any, *, can_be_str: bool = False) -> bool:
-    """Whether `value` is of `data_type`, or of any type that parameters have if that is None."""
+    """Return whether `value` has the type `data_type`, or any type of a parameter if that is None."""
     if data_type is None:
         return isinstance(value, SCALARS) or (isinstance(value, list) and all(isinstance(x, SCALARS) for x in value))
     scalar, is_list = _split_type(data_type)
@@ -111,9 +112,9 @@ def is_instance_of(value: Any, data_type: Any, *, can_be_str: bool = False) -> b
 
 
 def normalize_typed_substitution(value: Any, data_type: Any = None) -> Any:
-    """Return `value` ready to be performed: plain as it is, substitutions as lists of substitutions.
+    """Return plain values unchanged, and substitutions as lists of substitutions.
 
-    Raises TypeError if a plain value is not of `data_type`.
+    Raises TypeError if a plain value does not have the type `data_type`.
     """
     if data_type is not None:
         scalar, is_list = _split_type(data_type)
@@ -134,9 +135,9 @@ def normalize_typed_substitution(value: Any, data_type: Any = None) -> Any:
 
 
 def perform_typed_substitution(context: LaunchContext, value: Any, data_type: Any = None) -> Any:
-    """Return the value that a normalised `value` has in `context`.
+    """Return the value of a normalised `value` in `context`.
 
-    Raises ValueError if a substitution's text cannot be read as `data_type`.
+    Raises ValueError if the text of a substitution cannot be converted to `data_type`.
     """
     if isinstance(value, SCALARS):
         return value
@@ -149,4 +150,4 @@ def perform_typed_substitution(context: LaunchContext, value: Any, data_type: An
     return items
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

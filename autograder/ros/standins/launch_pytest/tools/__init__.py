@@ -1,8 +1,8 @@
-"""Tools for tests that wait for what processes do."""
+"""Tools for tests that wait for processes."""
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from . import process
 from .process import (
@@ -36,4 +36,4 @@ __all__ = [
     "wait_for_stderr_sync",
 ]
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

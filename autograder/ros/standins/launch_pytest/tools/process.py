@@ -1,9 +1,9 @@
-"""Wait until a process has started, written something or exited: in coroutines, or (`_sync`) in plain tests.
+"""Functions that wait until a process has started, written something or exited.
 
-Each returns whether it came to that within `timeout` seconds; without a time-out it waits for ever. The
-action must have been made with ``cached_output=True`` where its output is asked for. A validator gets all of
-the output so far. That of `wait_for` returns whether it suits. That of `assert` fails an assertion as long as it
-does not: what it returns counts for nothing.
+Those with `_sync` are for plain tests, the others for coroutines. Each returns whether this happened within `timeout`
+seconds, and waits forever without one. To wait for output, create the action with ``cached_output=True``. A validator
+gets the whole output. For `wait_for`, it returns whether the output is as expected. For `assert`, it raises an
+AssertionError while the output is not as expected, and its return value is ignored.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from launch import LaunchContext
 from launch.actions import ExecuteLocal
 from launch.event_handler import BaseEventHandler
 from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
-from standin_notice import guard
+from standin_notice import make_getattr
 
 Validator = Callable[[str], object]
 
 
 def _handlers(action: ExecuteLocal, notify: Callable[[], None]) -> list[BaseEventHandler]:
-    """Return handlers that notify of everything that the process does."""
+    """Return handlers that call `notify` for each event of the process."""
     return [
         OnProcessStart(target_action=action, on_start=lambda event, context: notify()),
         OnProcessIO(target_action=action, on_stdout=lambda event: notify(), on_stderr=lambda event: notify()),
@@ -33,7 +33,7 @@ def _handlers(action: ExecuteLocal, notify: Callable[[], None]) -> list[BaseEven
 
 
 @contextlib.contextmanager
-def _notified(context: LaunchContext, action: ExecuteLocal, notify: Callable[[], None]) -> Iterator[None]:
+def _call_on_events(context: LaunchContext, action: ExecuteLocal, notify: Callable[[], None]) -> Iterator[None]:
     handlers = _handlers(action, notify)
     for handler in handlers:
         context.register_event_handler(handler, append=True)
@@ -47,14 +47,14 @@ def _notified(context: LaunchContext, action: ExecuteLocal, notify: Callable[[],
 async def _wait(
     context: LaunchContext, action: ExecuteLocal, condition: Callable[[], bool], timeout: float | None
 ) -> bool:
-    happened = asyncio.Event()
+    changed = asyncio.Event()
     deadline = None if timeout is None else time.monotonic() + timeout
-    with _notified(context, action, happened.set):
+    with _call_on_events(context, action, changed.set):
         while not condition():
-            happened.clear()
-            left = None if deadline is None else deadline - time.monotonic()
+            changed.clear()
+            remaining = None if deadline is None else deadline - time.monotonic()
             try:
-                await asyncio.wait_for(happened.wait(), left)
+                await asyncio.wait_for(changed.wait(), remaining)
             except asyncio.TimeoutError:
                 return condition()
     return True
@@ -63,30 +63,30 @@ async def _wait(
 def _wait_sync(
     context: LaunchContext, action: ExecuteLocal, condition: Callable[[], bool], timeout: float | None
 ) -> bool:
-    happened = threading.Event()
+    changed = threading.Event()
     deadline = None if timeout is None else time.monotonic() + timeout
-    with _notified(context, action, happened.set):
+    with _call_on_events(context, action, changed.set):
         while not condition():
-            left = None if deadline is None else deadline - time.monotonic()
-            if not happened.wait(left):
+            remaining = None if deadline is None else deadline - time.monotonic()
+            if not changed.wait(remaining):
                 return condition()
-            happened.clear()
+            changed.clear()
     return True
 
 
-def _started(action: ExecuteLocal) -> Callable[[], bool]:
+def _has_started(action: ExecuteLocal) -> Callable[[], bool]:
     return lambda: "pid" in (action.process_details or {})
 
 
-def _exited(action: ExecuteLocal) -> Callable[[], bool]:
+def _has_exited(action: ExecuteLocal) -> Callable[[], bool]:
     return lambda: action.return_code is not None
 
 
-def _suits(read: Callable[[], str], validate: Validator) -> Callable[[], bool]:
+def _returns_true(read: Callable[[], str], validate: Validator) -> Callable[[], bool]:
     return lambda: bool(validate(read()))
 
 
-def _asserts(read: Callable[[], str], validate: Validator) -> Callable[[], bool]:
+def _raises_no_assertion(read: Callable[[], str], validate: Validator) -> Callable[[], bool]:
     def condition() -> bool:
         try:
             validate(read())
@@ -101,28 +101,28 @@ async def wait_for_start(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> bool:
     """Wait until the process has started."""
-    return await _wait(launch_context, execute_process_action, _started(execute_process_action), timeout)
+    return await _wait(launch_context, execute_process_action, _has_started(execute_process_action), timeout)
 
 
 def wait_for_start_sync(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> bool:
     """Wait until the process has started."""
-    return _wait_sync(launch_context, execute_process_action, _started(execute_process_action), timeout)
+    return _wait_sync(launch_context, execute_process_action, _has_started(execute_process_action), timeout)
 
 
 async def wait_for_exit(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> bool:
     """Wait until the process has exited."""
-    return await _wait(launch_context, execute_process_action, _exited(execute_process_action), timeout)
+    return await _wait(launch_context, execute_process_action, _has_exited(execute_process_action), timeout)
 
 
 def wait_for_exit_sync(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> bool:
     """Wait until the process has exited."""
-    return _wait_sync(launch_context, execute_process_action, _exited(execute_process_action), timeout)
+    return _wait_sync(launch_context, execute_process_action, _has_exited(execute_process_action), timeout)
 
 
 async def wait_for_output(
@@ -131,8 +131,8 @@ async def wait_for_output(
     validate_output: Validator,
     timeout: float | None = None,
 ) -> bool:
-    """Wait until the standard output suits."""
-    condition = _suits(execute_process_action.get_stdout, validate_output)
+    """Wait until the validator accepts the standard output."""
+    condition = _returns_true(execute_process_action.get_stdout, validate_output)
     return await _wait(launch_context, execute_process_action, condition, timeout)
 
 
@@ -142,8 +142,8 @@ def wait_for_output_sync(
     validate_output: Validator,
     timeout: float | None = None,
 ) -> bool:
-    """Wait until the standard output suits."""
-    condition = _suits(execute_process_action.get_stdout, validate_output)
+    """Wait until the validator accepts the standard output."""
+    condition = _returns_true(execute_process_action.get_stdout, validate_output)
     return _wait_sync(launch_context, execute_process_action, condition, timeout)
 
 
@@ -153,8 +153,8 @@ async def wait_for_stderr(
     validate_output: Validator,
     timeout: float | None = None,
 ) -> bool:
-    """Wait until the standard error suits."""
-    condition = _suits(execute_process_action.get_stderr, validate_output)
+    """Wait until the validator accepts the standard error."""
+    condition = _returns_true(execute_process_action.get_stderr, validate_output)
     return await _wait(launch_context, execute_process_action, condition, timeout)
 
 
@@ -164,8 +164,8 @@ def wait_for_stderr_sync(
     validate_output: Validator,
     timeout: float | None = None,
 ) -> bool:
-    """Wait until the standard error suits."""
-    condition = _suits(execute_process_action.get_stderr, validate_output)
+    """Wait until the validator accepts the standard error."""
+    condition = _returns_true(execute_process_action.get_stderr, validate_output)
     return _wait_sync(launch_context, execute_process_action, condition, timeout)
 
 
@@ -175,8 +175,8 @@ async def assert_output(
     validate_output: Validator,
     timeout: float | None = None,
 ) -> None:
-    """Fail unless the standard output suits in time."""
-    condition = _asserts(execute_process_action.get_stdout, validate_output)
+    """Fail unless the validator accepts the standard output in time."""
+    condition = _raises_no_assertion(execute_process_action.get_stdout, validate_output)
     if not await _wait(launch_context, execute_process_action, condition, timeout):
         validate_output(execute_process_action.get_stdout())
 
@@ -187,8 +187,8 @@ def assert_output_sync(
     validate_output: Validator,
     timeout: float | None = None,
 ) -> None:
-    """Fail unless the standard output suits in time."""
-    condition = _asserts(execute_process_action.get_stdout, validate_output)
+    """Fail unless the validator accepts the standard output in time."""
+    condition = _raises_no_assertion(execute_process_action.get_stdout, validate_output)
     if not _wait_sync(launch_context, execute_process_action, condition, timeout):
         validate_output(execute_process_action.get_stdout())
 
@@ -199,8 +199,8 @@ async def assert_stderr(
     validate_output: Validator,
     timeout: float | None = None,
 ) -> None:
-    """Fail unless the standard error suits in time."""
-    condition = _asserts(execute_process_action.get_stderr, validate_output)
+    """Fail unless the validator accepts the standard error in time."""
+    condition = _raises_no_assertion(execute_process_action.get_stderr, validate_output)
     if not await _wait(launch_context, execute_process_action, condition, timeout):
         validate_output(execute_process_action.get_stderr())
 
@@ -211,10 +211,10 @@ def assert_stderr_sync(
     validate_output: Validator,
     timeout: float | None = None,
 ) -> None:
-    """Fail unless the standard error suits in time."""
-    condition = _asserts(execute_process_action.get_stderr, validate_output)
+    """Fail unless the validator accepts the standard error in time."""
+    condition = _raises_no_assertion(execute_process_action.get_stderr, validate_output)
     if not _wait_sync(launch_context, execute_process_action, condition, timeout):
         validate_output(execute_process_action.get_stderr())
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

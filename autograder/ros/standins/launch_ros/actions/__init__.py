@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .node import Node
 from .scope import PushRosNamespace, SetParameter, SetParametersFromFile, SetRemap, SetROSLogDir, SetUseSimTime
 
-PushROSNamespace = PushRosNamespace  # the older spelling, which Jazzy still has
+PushROSNamespace = PushRosNamespace  # an older name, which Jazzy still has
 
 __all__ = [
     "Node",
@@ -22,7 +22,7 @@ __all__ = [
 
 _COMPOSABLE = "Composable nodes need C++ components and composition_interfaces, for which there is no wheel"
 
-__getattr__ = guard(
+__getattr__ = make_getattr(
     __name__,
     {
         "ComposableNodeContainer": _COMPOSABLE,

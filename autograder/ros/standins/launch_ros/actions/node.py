@@ -1,4 +1,4 @@
-"""The action that runs a node of a package."""
+"""The action that starts a node."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from launch import LaunchContext, SomeSubstitutionsType
 from launch.actions import ExecuteProcess
 from launch.logging import get_logger
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .._temporary import temporary_parameter_file
 from ..substitutions import ExecutableInPackage
@@ -25,11 +25,11 @@ RemapRule = tuple[SomeSubstitutionsType, SomeSubstitutionsType]
 class Node(ExecuteProcess):
     """Runs an executable of a package as a ROS node.
 
-    `name` and `namespace` replace those in the node's code; a relative namespace goes below the one that
+    `name` and `namespace` replace those in the node's code; a relative namespace is appended to the one that
     `PushRosNamespace` has set. `parameters` is a list of parameter files and dictionaries, in which later
-    ones win; a dictionary is written to a temporary parameter file, by YAML's rules: there the text ``1e3`` is no
-    longer a text, as in Jazzy. `remappings` is a list of pairs from, to.
-    `arguments` go before ``--ros-args``, `ros_arguments` behind it. All other arguments are those of
+    ones override earlier ones. A dictionary is written to a temporary parameter file by YAML's rules, by which the
+    text ``1e3`` becomes a number, as in Jazzy. `remappings` is a list of pairs (from, to).
+    `arguments` are placed before ``--ros-args``, `ros_arguments` after it. All other arguments are those of
     `launch.actions.ExecuteProcess`.
     """
 
@@ -51,11 +51,11 @@ class Node(ExecuteProcess):
         **kwargs: Any,
     ) -> None:
         command = executable if package is None else ExecutableInPackage(package=package, executable=executable)
-        for what, given in (("arguments", arguments), ("ros_arguments", ros_arguments)):
-            if isinstance(given, str):
-                raise TypeError(f"Node: {what} must be a list of strings, got the string {given!r}")
-        more = () if ros_arguments is None else ("--ros-args", *ros_arguments)
-        super().__init__(cmd=[command, *(arguments or ()), *more, "--ros-args"], name=exec_name, **kwargs)
+        for argument_name, value in (("arguments", arguments), ("ros_arguments", ros_arguments)):
+            if isinstance(value, str):
+                raise TypeError(f"Node: {argument_name} must be a list of strings, got the string {value!r}")
+        extra_arguments = () if ros_arguments is None else ("--ros-args", *ros_arguments)
+        super().__init__(cmd=[command, *(arguments or ()), *extra_arguments, "--ros-args"], name=exec_name, **kwargs)
         self._package = package
         self._executable = executable
         self._name = name
@@ -84,15 +84,15 @@ class Node(ExecuteProcess):
 
     @property
     def node_name(self) -> str:
-        """The full name of the node, as far as it is known, which it is when the action is executed."""
+        """The full name of the node; parts of it are placeholders until the action is executed."""
         return prefix_namespace(self.expanded_node_namespace, self.expanded_node_name) or ""
 
     def is_node_name_fully_specified(self) -> bool:
-        """Whether both name and namespace are known."""
+        """Return whether both name and namespace are known."""
         return _NO_NAME not in self.node_name and _NO_NAMESPACE not in self.node_name
 
     def execute(self, context: LaunchContext) -> Any:
-        """Complete the command with what ROS needs to know, and run it."""
+        """Add name, parameters and remappings to the command, and run it."""
         arguments = [
             *self._name_arguments(context),
             *self._parameter_arguments(context),
@@ -100,11 +100,11 @@ class Node(ExecuteProcess):
         ]
         self.cmd.extend(normalize_to_list_of_substitutions(argument) for argument in arguments)
         self.before_start(context)
-        self._warn_of_twins(context)
+        self._warn_about_duplicate_name(context)
         return super().execute(context)
 
     def before_start(self, context: LaunchContext) -> None:
-        """Do what a kind of node needs done when its name is known and before its process starts: here nothing."""
+        """Do nothing; subclasses override this to act once the name is known and before the process starts."""
 
     def _name_arguments(self, context: LaunchContext) -> list[str]:
         from rclpy.validate_namespace import validate_namespace
@@ -116,9 +116,9 @@ class Node(ExecuteProcess):
                 self.expanded_node_name = _perform(context, self._name)
                 validate_node_name(self.expanded_node_name)
                 arguments += ["-r", f"__node:={self.expanded_node_name}"]
-            own = None if self._namespace is None else _perform(context, self._namespace)
-            pushed = context.launch_configurations.get("ros_namespace")
-            namespace = make_namespace_absolute(prefix_namespace(pushed, own))
+            own_namespace = None if self._namespace is None else _perform(context, self._namespace)
+            pushed_namespace = context.launch_configurations.get("ros_namespace")
+            namespace = make_namespace_absolute(prefix_namespace(pushed_namespace, own_namespace))
             if namespace is not None:
                 self.expanded_node_namespace = namespace
                 validate_namespace(namespace)
@@ -136,15 +136,15 @@ class Node(ExecuteProcess):
         return arguments
 
     def _parameter_arguments(self, context: LaunchContext) -> list[str]:
-        """Return the arguments for the parameters: those set for all nodes first, so that own ones win."""
+        """Return the arguments for the parameters: those for all nodes first, so that the node's own override them."""
         arguments: list[str] = []
         for item in context.launch_configurations.get("global_params", ()):
             arguments += ["--params-file", str(item)] if isinstance(item, Path) else ["-p", f"{item[0]}:={item[1]}"]
         for item in evaluate_parameters(context, self._parameters or ()):
             if isinstance(item, tuple):
-                rule = _rule(*item)
-                named = self.expanded_node_name != _NO_NAME
-                arguments += ["-p", f"{self.expanded_node_name}:{rule}" if named else rule]
+                rule = _parameter_rule(*item)
+                is_named = self.expanded_node_name != _NO_NAME
+                arguments += ["-p", f"{self.expanded_node_name}:{rule}" if is_named else rule]
             elif isinstance(item, dict):
                 arguments += ["--params-file", str(self._parameter_file(item))]
             elif item.is_file():
@@ -159,11 +159,11 @@ class Node(ExecuteProcess):
 
     def _remap_arguments(self, context: LaunchContext) -> list[str]:
         rules = list(context.launch_configurations.get("ros_remaps", ()))
-        rules += [(_perform(context, before), _perform(context, after)) for before, after in self._remappings]
+        rules += [(_perform(context, old_name), _perform(context, new_name)) for old_name, new_name in self._remappings]
         self.expanded_remapping_rules = rules or None
-        return [argument for before, after in rules for argument in ("-r", f"{before}:={after}")]
+        return [argument for old_name, new_name in rules for argument in ("-r", f"{old_name}:={new_name}")]
 
-    def _warn_of_twins(self, context: LaunchContext) -> None:
+    def _warn_about_duplicate_name(self, context: LaunchContext) -> None:
         if not self.is_node_name_fully_specified():
             return
         names: dict[str, int] = context.get_locals_as_dict().get("unique_ros_node_names", {})
@@ -181,9 +181,9 @@ def _perform(context: LaunchContext, value: SomeSubstitutionsType) -> str:
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))
 
 
-def _rule(name: str, value: Any) -> str:
+def _parameter_rule(name: str, value: Any) -> str:
     """Return a parameter as an argument of ``-p``."""
     return f"{name}:={yaml.dump(value)}"
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

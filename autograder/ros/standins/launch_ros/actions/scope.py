@@ -1,4 +1,4 @@
-"""Actions on all nodes that follow in the same scope: namespace, remappings, parameters, log files."""
+"""Actions on all later nodes in the same scope: namespace, remappings, parameters, log files."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ from ..utilities._parameters import evaluate_value
 
 
 class PushRosNamespace(Action):
-    """Puts the nodes that follow below a namespace."""
+    """Puts the later nodes in a namespace."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.namespace = normalize_to_list_of_substitutions(namespace)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it, below the one that is set already."""
-        pushed = perform_substitutions(context, self.namespace)
+        """Set the namespace, relative to the one that is already set."""
+        added = perform_substitutions(context, self.namespace)
         previous = context.launch_configurations.get("ros_namespace")
-        namespace = make_namespace_absolute(prefix_namespace(previous, pushed))
+        namespace = make_namespace_absolute(prefix_namespace(previous, added))
         validate_namespace(namespace)
         context.launch_configurations["ros_namespace"] = namespace
 
 
 class SetRemap(Action):
-    """Remaps a name for the nodes that follow."""
+    """Remaps a name for the later nodes."""
 
     def __init__(self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -49,7 +49,7 @@ class SetRemap(Action):
 
 
 class SetParameter(Action):
-    """Sets a parameter for the nodes that follow; their own parameters win."""
+    """Sets a parameter for the later nodes; their own parameters override it."""
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -59,7 +59,7 @@ class SetParameter(Action):
         self.value = value
 
     def execute(self, context: LaunchContext) -> None:
-        """Add the parameter, in place of an earlier value."""
+        """Add the parameter, which replaces an earlier value."""
         name = perform_substitutions(context, self.name)
         others = [
             item
@@ -71,9 +71,9 @@ class SetParameter(Action):
 
 
 class SetUseSimTime(Action):
-    """Lets the launch itself go by the time of ``/clock``; the nodes do not follow.
+    """Makes the launch itself use the time of ``/clock``; this does not affect the nodes.
 
-    Raises ValueError when it is executed and the value is not a bool: no substitution is performed.
+    Raises ValueError on execution if the value is not a bool, as substitutions are not performed.
     """
 
     def __init__(self, value: bool, **kwargs: Any) -> None:
@@ -81,15 +81,15 @@ class SetUseSimTime(Action):
         self.value = value
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it for the whole launch."""
+        """Set the parameter for the whole launch."""
         parameter = Parameter("use_sim_time", Parameter.Type.BOOL, self.value)
         context.extend_globals({"use_sim_time": parameter.value})
 
 
 class SetParametersFromFile(Action):
-    """Gives a parameter file to the nodes that follow; their own parameters win.
+    """Gives a parameter file to the later nodes; their own parameters override it.
 
-    Raises FileNotFoundError when it is executed and there is no such file.
+    Raises FileNotFoundError on execution if the file does not exist.
     """
 
     def __init__(self, filename: str | os.PathLike[str] | SomeSubstitutionsType, **kwargs: Any) -> None:
@@ -105,18 +105,18 @@ class SetParametersFromFile(Action):
 
 
 class SetROSLogDir(Action):
-    """Sets the folder of the nodes' log files; a relative path goes below the folder that is set already."""
+    """Sets the folder of the nodes' log files; a relative path is appended to the folder that is already set."""
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set the variable ``ROS_LOG_DIR``, which the nodes that follow inherit."""
+        """Set the variable ``ROS_LOG_DIR``, which the later nodes inherit."""
         current = context.environment.get("ROS_LOG_DIR") or get_logging_directory()
         context.environment["ROS_LOG_DIR"] = str(Path(current) / perform_substitutions(context, self.log_dir))
 
 
 def _add(context: LaunchContext, key: str, item: Any) -> None:
-    # A new tuple each time: a scope that was saved must not see what is added inside of it.
+    # Creates a new tuple, because a saved scope must not contain items that were added later.
     context.launch_configurations[key] = (*context.launch_configurations.get(key, ()), item)

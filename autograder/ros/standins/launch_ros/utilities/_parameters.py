@@ -1,7 +1,7 @@
-"""The `parameters` of a node: dictionaries with substitutions in them become names and values.
+"""The evaluation of a node's `parameters`: dictionaries with substitutions become names and values.
 
-Values keep their type. What is given as text stays text; what comes out of a substitution is read by YAML's
-rules, so that ``LaunchConfiguration('speed')`` gives a number. Nested dictionaries become dotted names.
+Plain values keep their type, and plain text stays text. The text of a substitution is read by YAML's rules, so
+``LaunchConfiguration('speed')`` can be a number. Nested dictionaries become dotted names.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ from launch.utilities.type_utils import is_substitution, is_uniform_list
 
 from ..parameter_descriptions import Parameter, ParameterFile, ParameterValue
 
-Evaluated = Path | dict[str, Any] | tuple[str, Any]
+EvaluatedParameters = Path | dict[str, Any] | tuple[str, Any]
 _ALLOWED = "bool, int, float, str, or a list of one of them"
 
 
-def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> list[Evaluated]:
-    """Return each of `parameters` evaluated: a file as a path, a dictionary flat, a `Parameter` as a pair.
+def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> list[EvaluatedParameters]:
+    """Return the evaluated `parameters`: a path for a file, a flat dictionary, or a pair for a `Parameter`.
 
-    Raises TypeError for anything else and for values of a type that parameters do not have.
+    Raises TypeError for any other item, and for values of a type that parameters do not have.
     """
     if isinstance(parameters, (str, os.PathLike, Mapping, Substitution)):
         raise TypeError(f"Expecting list of parameters, got {parameters!r}: put it in a list, parameters=[...]")
     return [_evaluate(context, parameter) for parameter in parameters]
 
 
-def _evaluate(context: LaunchContext, parameter: Any) -> Evaluated:
+def _evaluate(context: LaunchContext, parameter: Any) -> EvaluatedParameters:
     if isinstance(parameter, Mapping):
         return flatten(context, parameter)
     if isinstance(parameter, (Parameter, ParameterFile)):
@@ -47,7 +47,7 @@ def _evaluate(context: LaunchContext, parameter: Any) -> Evaluated:
 
 
 def flatten(context: LaunchContext, parameters: Mapping[Any, Any], prefix: str = "") -> dict[str, Any]:
-    """Return `parameters` with evaluated names and values, and dots for the nesting."""
+    """Return `parameters` with evaluated names and values; the names of nested ones have dots."""
     flat: dict[str, Any] = {}
     for key, value in parameters.items():
         name = prefix + perform_substitutions(context, normalize_to_list_of_substitutions(key))
@@ -59,7 +59,7 @@ def flatten(context: LaunchContext, parameters: Mapping[Any, Any], prefix: str =
 
 
 def evaluate_value(context: LaunchContext, name: str, value: Any) -> Any:
-    """Return one value, of a type that parameters have; TypeError or ValueError if it has another."""
+    """Return one value; raise TypeError or ValueError if it has a type that parameters do not have."""
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
     if isinstance(value, (bool, int, float, str, bytes)):
@@ -88,7 +88,7 @@ def _from_yaml(name: str, text: str) -> Any:
 
 
 def _evaluate_list(context: LaunchContext, name: str, values: Sequence[Any]) -> list[Any]:
-    """Return the list with its items evaluated: integers among floats as floats, other mixtures as text."""
+    """Return the list with evaluated items; integers and floats become floats, other mixed types become text."""
     items = [
         item if isinstance(item, (bool, int, float, str)) else evaluate_value(context, name, item) for item in values
     ]

@@ -1,11 +1,11 @@
-"""A process that keeps a launch from being idle, and finding a process by its name."""
+"""A process that keeps a launch running, and the search for processes."""
 
 from __future__ import annotations
 
 import sys
 
 from launch.actions import ExecuteProcess
-from standin_notice import guard
+from standin_notice import make_getattr
 
 from .proc_lookup import NO_CMD_ARGS, NoMatchingProcessException, resolveProcesses
 
@@ -14,9 +14,9 @@ __all__ = ["NO_CMD_ARGS", "KeepAliveProc", "NoMatchingProcessException", "resolv
 _WAIT = "import signal\ntry:\n    signal.pause()\nexcept KeyboardInterrupt:\n    pass\n"
 
 
-def KeepAliveProc() -> ExecuteProcess:  # the real one's name
-    """Return a process that does nothing until the launch ends, so that the launch does not end before."""
+def KeepAliveProc() -> ExecuteProcess:  # the name in the real package
+    """Return a process that does nothing until the launch is shut down, and so keeps it running."""
     return ExecuteProcess(cmd=[sys.executable, "-c", _WAIT])
 
 
-__getattr__ = guard(__name__)
+__getattr__ = make_getattr(__name__)

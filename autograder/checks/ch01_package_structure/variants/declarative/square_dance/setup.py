@@ -1,4 +1,4 @@
-"""All that can be said without code stands in setup.cfg."""
+"""Install the data files; setup.cfg contains everything that needs no code."""
 
 from pathlib import Path
 
@@ -10,13 +10,13 @@ index = Path('share/ament_index/resource_index/packages')
 
 
 def installed_files():
-    """Yield each folder below share with the files that go into it."""
+    """Yield each folder below share with the files to install there."""
     yield str(index), [f'resource/{NAME}']
     yield str(share), ['package.xml']
     for folder in ('launch', 'config'):
-        here = sorted(path for path in Path(folder).rglob('*') if path.is_file())
-        for parent in sorted({path.parent for path in here}):
-            yield str(share / parent), [str(path) for path in here if path.parent == parent]
+        files = sorted(path for path in Path(folder).rglob('*') if path.is_file())
+        for parent in sorted({path.parent for path in files}):
+            yield str(share / parent), [str(path) for path in files if path.parent == parent]
 
 
 setup(data_files=list(installed_files()))

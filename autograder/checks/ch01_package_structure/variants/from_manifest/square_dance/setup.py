@@ -1,4 +1,4 @@
-"""What package.xml says is not said again: this file reads it."""
+"""Set up the package with the metadata of package.xml instead of repeating it."""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -11,7 +11,7 @@ NAME = MANIFEST.findtext('name')
 
 
 def files(folder, pattern):
-    """Return the files of a folder, as paths from here."""
+    """Return the files of a folder, as paths relative to the package's."""
     return [str(path.relative_to(HERE)) for path in sorted((HERE / folder).glob(pattern))]
 
 

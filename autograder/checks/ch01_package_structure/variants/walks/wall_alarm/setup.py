@@ -12,8 +12,8 @@ data_files = [
     (os.path.join('share', name), ['package.xml']),
 ]
 for folder, ending in (('launch', '.launch.py'), ('config', '.yaml')):
-    found = [entry.path for entry in os.scandir(folder) if entry.name.endswith(ending)]
-    data_files.append((os.path.join('share', name, folder), found))
+    paths = [entry.path for entry in os.scandir(folder) if entry.name.endswith(ending)]
+    data_files.append((os.path.join('share', name, folder), paths))
 
 setuptools.setup(
     name=name,

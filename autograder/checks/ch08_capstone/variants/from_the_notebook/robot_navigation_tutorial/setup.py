@@ -19,8 +19,8 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (share, ['package.xml']),
-        *((f'{share}/{kind}', sorted(glob(f'{kind}/{which}')))
-          for kind, which in (('launch', '*.launch.py'), ('config', '*.yaml'))),
+        *((f'{share}/{folder}', sorted(glob(f'{folder}/{pattern}')))
+          for folder, pattern in (('launch', '*.launch.py'), ('config', '*.yaml'))),
     ],
     install_requires=['setuptools'],
     extras_require={'test': ['pytest']},

@@ -7,27 +7,27 @@ import math
 
 @dataclass(frozen=True)
 class Verdict:
-    """What came of a question about a trip."""
+    """The answer to a question about a trip: the level at its end, and why it is not possible."""
 
-    left: int
+    at_end: int
     reason: str
 
 
 def whole_percent(share):
-    """Return a share from 0 to 1 in whole percent, halves up; None if it is no such share."""
+    """Return a share from 0 to 1 in whole percent, halves rounded up, or None for other numbers."""
     if math.isnan(share) or not 0.0 <= share <= 1.0:
         return None
     return int((Decimal(share) * 100).quantize(Decimal(1), rounding=ROUND_HALF_UP))
 
 
-def judge(level, legs, reserve, metres_a_percent):
-    """Return the verdict on a trip; level is None where it is unknown."""
+def check_trip(level, legs, reserve, metres_per_percent):
+    """Return the verdict on a trip; an unknown level is None."""
     if level is None:
         return Verdict(-1, "the battery has not said its level")
     if not all(math.isfinite(leg) and leg >= 0.0 for leg in legs):
         return Verdict(-1, "a leg of this trip is no distance")
-    needed = math.fsum(legs) / metres_a_percent
-    left = max(0, math.floor(level - needed))
+    needed = math.fsum(legs) / metres_per_percent
+    at_end = max(0, math.floor(level - needed))
     if needed > level:
-        return Verdict(left, f"it takes {needed:.0f} percent, and there are {level}")
-    return Verdict(left, "" if left >= reserve else f"{reserve} percent must be left, not {left}")
+        return Verdict(at_end, f"it takes {needed:.0f} percent, and there are {level}")
+    return Verdict(at_end, "" if at_end >= reserve else f"{reserve} percent must be left, not {at_end}")

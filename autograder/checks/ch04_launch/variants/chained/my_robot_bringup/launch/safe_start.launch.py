@@ -1,4 +1,4 @@
-"""A safe start as a chain of handlers, each registered by the one before."""
+"""Start the robot safely, by a chain of handlers, each of which registers the next."""
 
 from functools import partial
 
@@ -15,13 +15,13 @@ node = partial(Node, package='my_robot_bringup', output='screen')
 
 
 def generate_launch_description():
-    """Register what follows on what."""
+    """Return the launch description of a safe start."""
     percent = ParameterValue([LaunchConfiguration('percent')], value_type=float)
     reporter = node(executable='reporter', name='reporter', respawn=True, respawn_delay=0.5)
     self_test = node(executable='self_test', name='self_test', parameters=[{'battery': percent}])
     driver = node(executable='driver', name='driver', on_exit=EmitEvent(event=Shutdown(reason='no driver')))
 
-    def judge(event, context):
+    def after_self_test(event, context):
         return {0: [driver]}.get(event.returncode, [OpaqueFunction(function=give_up)])
 
     def give_up(context):
@@ -32,7 +32,7 @@ def generate_launch_description():
         SetLaunchConfiguration('percent', LaunchConfiguration('battery')),
         RegisterEventHandler(OnProcessStart(
             target_action=self_test,
-            on_start=RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=judge)))),
+            on_start=RegisterEventHandler(OnProcessExit(target_action=self_test, on_exit=after_self_test)))),
         self_test,
         reporter,
     ])

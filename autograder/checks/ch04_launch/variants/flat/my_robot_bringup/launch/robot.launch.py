@@ -1,4 +1,4 @@
-"""One robot, described action by action into a list that grows."""
+"""Start one robot; actions are added to the launch description one by one."""
 
 import os
 
@@ -19,22 +19,22 @@ ARGUMENTS = (
 
 
 def generate_launch_description():
-    """Fill the description."""
+    """Return the launch description of one robot."""
     description = launch.LaunchDescription()
     for name, default, choices, text in ARGUMENTS:
         description.add_action(launch.actions.DeclareLaunchArgument(
             name, default_value=default, choices=choices, description=text))
-    file = ParameterFile(os.path.join(
+    parameter_file = ParameterFile(os.path.join(
         get_package_share_directory(PACKAGE), 'config', 'robot.yaml'))
     speed = ParameterValue(
         subs.PythonExpression(['float(', subs.LaunchConfiguration('speed'), ')']),
         value_type=float)
     description.add_action(launch_ros.actions.Node(
         package=PACKAGE, executable='driver', output='screen',
-        parameters=[file, {'speed': speed}]))
+        parameters=[parameter_file, {'speed': speed}]))
     reporter = launch_ros.actions.Node(
         package=PACKAGE, executable='reporter', exec_name='reporter', output='both',
-        parameters=[file, {'robot_name': ParameterValue(
+        parameters=[parameter_file, {'robot_name': ParameterValue(
             [subs.LaunchConfiguration('robot_name')], value_type=str)}])
     description.add_action(launch.actions.GroupAction(
         [reporter],

@@ -1,4 +1,4 @@
-"""A safe start by the nodes' own on_exit instead of handlers that are registered."""
+"""Start the robot safely, with on_exit of the nodes instead of registered handlers."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, EmitEvent, LogInfo
@@ -8,23 +8,24 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
 
-def node(executable, **more):
-    """Return a node of this package, named as its executable."""
+def node(executable, **options):
+    """Return a node of this package with the name of its executable."""
     return Node(
-        package='my_robot_bringup', executable=executable, name=executable, output='both', **more)
+        package='my_robot_bringup', executable=executable, name=executable, output='both',
+        **options)
 
 
 def generate_launch_description():
-    """Chain the nodes."""
+    """Return the launch description of a safe start."""
     stop = EmitEvent(event=Shutdown(reason='the robot is not to drive'))
     driver = node('driver', on_exit=[LogInfo(msg='no driver any more'), stop])
 
-    def judge(event, context):
+    def after_self_test(event, context):
         return driver if event.returncode == 0 else stop
 
     charge = ParameterValue(LaunchConfiguration('battery'), value_type=float)
     return LaunchDescription([
         DeclareLaunchArgument('battery', default_value='80', description='percent'),
         node('reporter', respawn=True, respawn_delay=0.5),
-        node('self_test', parameters=[{'battery': charge}], on_exit=judge),
+        node('self_test', parameters=[{'battery': charge}], on_exit=after_self_test),
     ])

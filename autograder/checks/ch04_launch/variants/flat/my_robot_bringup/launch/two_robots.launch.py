@@ -1,4 +1,4 @@
-"""Two robots: paths found at launch time, namespaces joined there too."""
+"""Start two robots; paths and namespaces are substitutions."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription
@@ -8,7 +8,7 @@ from launch_ros.substitutions import FindPackageShare
 
 
 def generate_launch_description():
-    """Make the groups in a loop."""
+    """Return the launch description with one group for each robot."""
     robot = PathJoinSubstitution(
         [FindPackageShare('my_robot_bringup'), 'launch', 'robot.launch.py'])
     entities = [

@@ -1,4 +1,4 @@
-"""One robot: everything is decided in a function that knows what the arguments are."""
+"""Start one robot; a function that knows the arguments' values creates the nodes."""
 
 import os
 
@@ -13,23 +13,23 @@ CONFIG = os.path.join(get_package_share_directory('my_robot_bringup'), 'config',
 
 
 def nodes(context):
-    """Return the nodes."""
+    """Return the nodes for the arguments of a launch."""
     def argument(name):
         return LaunchConfiguration(name).perform(context)
 
-    def node(executable, **own):
+    def node(executable, **parameters):
         return Node(
             package='my_robot_bringup', executable=executable, name=executable, output='screen',
-            parameters=[CONFIG, own])
+            parameters=[CONFIG, parameters])
 
-    found = [node('driver', speed=float(argument('speed')))]
+    entities = [node('driver', speed=float(argument('speed')))]
     if argument('report') == 'true':
-        found.append(node('reporter', robot_name=ParameterValue(argument('robot_name'), value_type=str)))
-    return found
+        entities.append(node('reporter', robot_name=ParameterValue(argument('robot_name'), value_type=str)))
+    return entities
 
 
 def generate_launch_description():
-    """Declare, then decide."""
+    """Declare the arguments, and let the function create the nodes."""
     return LaunchDescription([
         DeclareLaunchArgument('robot_name', default_value='robot1', description='the name in its reports'),
         DeclareLaunchArgument('speed', default_value='0.2', description='metres a second'),

@@ -1,4 +1,4 @@
-"""Two robots: the groups are made once the names are known."""
+"""Start two robots; a function that knows their names creates the groups."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription, OpaqueFunction
@@ -8,7 +8,7 @@ from launch_ros.actions import PushROSNamespace, SetRemap
 
 
 def robot(name, speed, path):
-    """Return one group."""
+    """Return the group of one robot."""
     return GroupAction(scoped=True, actions=[
         PushROSNamespace(name),
         SetRemap(src='status', dst='/fleet/status'),
@@ -18,14 +18,14 @@ def robot(name, speed, path):
 
 
 def robots(context):
-    """Return both groups."""
+    """Return the groups of both robots."""
     first, second, speed = (LaunchConfiguration(name).perform(context) for name in ('first', 'second', 'speed'))
     path = PathJoinSubstitution([ThisLaunchFileDir(), 'robot.launch.py']).perform(context)
     return [robot(name, speed, path) for name in (first, second)]
 
 
 def generate_launch_description():
-    """Declare three arguments, and let a function do the rest."""
+    """Declare the arguments, and let the function create the groups."""
     table = {'first': ('robot1', 'its space'), 'second': ('robot2', 'its space'), 'speed': ('0.2', 'in m/s')}
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=text)

@@ -1,4 +1,4 @@
-"""One robot: a function refuses each report but true and false, and texts stand in several parts."""
+"""Start one robot; a function refuses every report except true and false."""
 
 from pathlib import Path
 

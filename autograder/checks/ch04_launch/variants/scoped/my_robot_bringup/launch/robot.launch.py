@@ -1,4 +1,4 @@
-"""One robot: the file is set for a scope, and conditions are substitutions."""
+"""Start one robot; parameters are set for a scope, and the condition is a substitution."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, GroupAction
@@ -10,8 +10,8 @@ from launch_ros.substitutions import FindPackageShare
 
 
 def generate_launch_description():
-    """Nest the nodes in scopes with parameters."""
-    file = PathJoinSubstitution([FindPackageShare('my_robot_bringup'), 'config', 'robot.yaml'])
+    """Return the nodes, nested in scopes with parameters."""
+    config = PathJoinSubstitution([FindPackageShare('my_robot_bringup'), 'config', 'robot.yaml'])
     speed = ParameterValue(LaunchConfiguration('speed', default='0.2'), value_type=float)
     name = ParameterValue(LaunchConfiguration('robot_name'), value_type=str)
     return LaunchDescription([
@@ -20,7 +20,7 @@ def generate_launch_description():
         DeclareLaunchArgument('speed', default_value='0.2', description='speed (m/s)'),
         DeclareLaunchArgument('robot_name', default_value='robot1', description='name'),
         GroupAction([
-            SetParametersFromFile(file),
+            SetParametersFromFile(config),
             GroupAction([
                 SetParameter('speed', speed),
                 Node(package='my_robot_bringup', executable='driver', name='driver', output={'both': 'screen'}),

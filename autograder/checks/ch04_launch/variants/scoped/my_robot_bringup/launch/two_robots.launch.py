@@ -1,4 +1,4 @@
-"""Two robots: a namespace and a name are configurations of each group."""
+"""Start two robots; name and speed are launch configurations of each group."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription
@@ -8,15 +8,15 @@ from launch_ros.substitutions import FindPackageShare
 
 
 def generate_launch_description():
-    """Let launch_configurations name what is included."""
-    file = PathJoinSubstitution([FindPackageShare('my_robot_bringup'), 'launch', 'robot.launch.py'])
+    """Return the launch description of two robots."""
+    path = PathJoinSubstitution([FindPackageShare('my_robot_bringup'), 'launch', 'robot.launch.py'])
 
     def robot(argument):
         return GroupAction(
             [
                 PushRosNamespace(LaunchConfiguration('robot_name')),
                 SetRemap('status', '/fleet/status'),
-                IncludeLaunchDescription(file),
+                IncludeLaunchDescription(path),
             ],
             launch_configurations={
                 'robot_name': LaunchConfiguration(argument), 'speed': LaunchConfiguration('speed')},

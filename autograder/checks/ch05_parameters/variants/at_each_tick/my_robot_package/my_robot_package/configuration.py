@@ -7,7 +7,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 
 @dataclass(frozen=True)
 class Number:
-    """A parameter with limits."""
+    """A numeric parameter with limits."""
 
     name: str
     default: float
@@ -16,7 +16,7 @@ class Number:
     text: str
 
     def descriptor(self):
-        """Return its descriptor, the range by the default's type."""
+        """Return its descriptor, with a range of the default's type."""
         kind, field = (
             (IntegerRange, 'integer_range') if isinstance(self.default, int)
             else (FloatingPointRange, 'floating_point_range'))
@@ -34,16 +34,16 @@ NUMBERS = (
 
 
 def contradiction(safety_distance, slow_distance):
-    """Compare."""
+    """Return why the distances do not fit, or an empty string."""
     fits = safety_distance < slow_distance
     return '' if fits else 'safety_distance=%.3f m >= slow_distance=%.3f m' % (safety_distance, slow_distance)
 
 
 def declare_configuration(node):
-    """Declare the text, then the numbers, then judge."""
+    """Declare the name and the numbers, and raise ValueError if the distances do not fit."""
     node.declare_parameter('robot_name', 'DefaultRobot', ParameterDescriptor(description='its name', read_only=True))
     for number in NUMBERS:
         node.declare_parameter(number.name, number.default, number.descriptor())
     distances = node.get_parameters(['safety_distance', 'slow_distance'])
-    if words := contradiction(*(distance.value for distance in distances)):
-        raise ValueError(words)
+    if reason := contradiction(*(distance.value for distance in distances)):
+        raise ValueError(reason)

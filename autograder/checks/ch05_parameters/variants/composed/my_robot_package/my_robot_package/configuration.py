@@ -15,22 +15,22 @@ class Contradiction(ValueError):
 
 
 def contradiction(safety_distance, slow_distance):
-    """Return what does not fit, or nothing."""
+    """Return why the distances do not fit, or an empty string."""
     problem = ""
     if not slow_distance > safety_distance:
         problem = f"slow_distance = {slow_distance} is not above safety_distance = {safety_distance}"
     return problem
 
 
-def _described(low, high, text):
+def _descriptor(low, high, text):
     limits = FloatingPointRange()
     limits.from_value, limits.to_value = low, high
     return ParameterDescriptor(description=text, floating_point_range=[limits])
 
 
 def declare_configuration(node):
-    """Declare the whole table at once."""
-    table = [(name, default, _described(low, high, text)) for name, (default, low, high, text) in DOUBLES.items()]
+    """Declare the whole table in one call."""
+    table = [(name, default, _descriptor(low, high, text)) for name, (default, low, high, text) in DOUBLES.items()]
     table.append(
         (
             "battery_threshold",

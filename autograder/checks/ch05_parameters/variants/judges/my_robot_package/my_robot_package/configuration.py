@@ -1,4 +1,4 @@
-"""Parameters by functions, one for each kind."""
+"""Parameters that are declared by one function for each type."""
 
 from functools import partial
 
@@ -6,7 +6,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 
 
 def contradiction(safety_distance, slow_distance):
-    """Return the judgement."""
+    """Return why the distances do not fit, or an empty string."""
     values = {'safety_distance': safety_distance, 'slow_distance': slow_distance}
     listed = ', '.join(f'{name} {value:.2f} m' for name, value in values.items())
     return [f'the first has to be smaller: {listed}', ''][safety_distance < slow_distance]
@@ -18,19 +18,19 @@ def _declare(kind, field, node, name, default, low, high, unit):
     return node.declare_parameter(name, default, descriptor).value
 
 
-double = partial(_declare, FloatingPointRange, 'floating_point_range')
-whole = partial(_declare, IntegerRange, 'integer_range')
+declare_double = partial(_declare, FloatingPointRange, 'floating_point_range')
+declare_integer = partial(_declare, IntegerRange, 'integer_range')
 
 
 def declare_configuration(node):
-    """Declare one after the other."""
+    """Declare the parameters one by one, and raise ValueError if the distances do not fit."""
     node.declare_parameter(
         'robot_name', 'DefaultRobot', ParameterDescriptor(read_only=True, description='name of the robot'))
-    double(node, 'max_linear_velocity', 0.3, 0.0, 1.0, 'm/s')
-    safety = double(node, 'safety_distance', 0.5, 0.2, 3.0, 'm')
-    slow = double(node, 'slow_distance', 1.0, 0.2, 3.0, 'm')
-    double(node, 'control_frequency', 10.0, 1.0, 50.0, 'Hz')
-    whole(node, 'battery_threshold', 20, 0, 100, 'percent')
+    declare_double(node, 'max_linear_velocity', 0.3, 0.0, 1.0, 'm/s')
+    safety = declare_double(node, 'safety_distance', 0.5, 0.2, 3.0, 'm')
+    slow = declare_double(node, 'slow_distance', 1.0, 0.2, 3.0, 'm')
+    declare_double(node, 'control_frequency', 10.0, 1.0, 50.0, 'Hz')
+    declare_integer(node, 'battery_threshold', 20, 0, 100, 'percent')
     problem = contradiction(safety, slow)
     if problem:
         raise ValueError(problem)

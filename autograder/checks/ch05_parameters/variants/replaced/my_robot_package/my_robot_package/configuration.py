@@ -1,17 +1,17 @@
-"""One call for all six."""
+"""All six parameters, declared by one call."""
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterType
 
 
 def contradiction(safety_distance, slow_distance):
-    """Refuse what is not strictly ordered."""
+    """Return why the distances are not strictly ordered, or an empty string."""
     if slow_distance <= safety_distance:
         return f'It cannot stop at safety_distance {safety_distance} m after braking from slow_distance {slow_distance} m.'
     return ''
 
 
 def declare_configuration(node):
-    """Declare them, and raise what does not fit."""
+    """Declare the parameters, and raise ValueError if the distances do not fit."""
     metres = [FloatingPointRange(from_value=0.2, to_value=3.0)]
     safety, slow, *_ = node.declare_parameters('', [
         ('safety_distance', 0.5, ParameterDescriptor(
@@ -26,5 +26,5 @@ def declare_configuration(node):
             integer_range=[IntegerRange(from_value=0, to_value=100)], description='reserve (percent)')),
         ('robot_name', 'DefaultRobot', ParameterDescriptor(read_only=True, description='call sign')),
     ])
-    if why := contradiction(safety.value, slow.value):
-        raise ValueError(why)
+    if reason := contradiction(safety.value, slow.value):
+        raise ValueError(reason)

@@ -1,4 +1,4 @@
-"""The same launch, with a path of the operating system's."""
+"""The same launch file, with a path instead of a substitution."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The same function, by cases."""
+"""The same function, written as a list of cases."""
 
 
 def safe_speed(wanted, distance, stop_distance=0.5, slow_distance=1.5):

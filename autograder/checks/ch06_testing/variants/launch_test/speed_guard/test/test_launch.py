@@ -1,4 +1,4 @@
-"""The launched guard, in the style of launch_testing: a description, and cases beside it."""
+"""A test of the launched guard in the style of launch_testing."""
 
 import os
 import time
@@ -24,7 +24,7 @@ DOMAIN = 1 + os.getpid() % 100
 
 @pytest.mark.launch_test
 def generate_test_description():
-    """Launch what the user launches."""
+    """Launch the installed launch file."""
     file = PathJoinSubstitution([FindPackageShare('speed_guard'), 'launch', 'guard.launch.py'])
     return LaunchDescription([
         SetEnvironmentVariable('ROS_DOMAIN_ID', str(DOMAIN)),
@@ -33,11 +33,11 @@ def generate_test_description():
     ])
 
 
-class GuardAtWork(unittest.TestCase):
-    """While it runs."""
+class TestGuard(unittest.TestCase):
+    """Test cases that run while the guard runs."""
 
     def setUp(self):
-        """Join its domain."""
+        """Create a node in the domain of the guard."""
         self.context = Context()
         rclpy.init(context=self.context, domain_id=DOMAIN)
         self.node = rclpy.create_node('asker', context=self.context)
@@ -45,13 +45,13 @@ class GuardAtWork(unittest.TestCase):
         self.executor.add_node(self.node)
 
     def tearDown(self):
-        """Leave."""
+        """Destroy the node."""
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.try_shutdown(context=self.context)
 
     def test_half_way_is_half_as_fast(self):
-        """At 0.55 m of 0.3 m to 0.8 m, half of the speed is left."""
+        """Half-way between 0.3 m and 0.8 m, the speed is halved."""
         answers = []
         self.node.create_subscription(
             Twist, '/cmd_vel', lambda answer: answers.append(answer.linear.x), 10)
@@ -66,8 +66,8 @@ class GuardAtWork(unittest.TestCase):
 
         timer = self.node.create_timer(0.05, tick)
         names = []
-        end = time.monotonic() + 10.0
-        while time.monotonic() < end and not (
+        deadline = time.monotonic() + 10.0
+        while time.monotonic() < deadline and not (
                 'speed_guard' in names and any(abs(answer - 0.5) < 1e-4 for answer in answers)):
             self.executor.spin_once(timeout_sec=0.1)
             names = self.node.get_node_names()

@@ -1,4 +1,4 @@
-"""The launched guard, asked for its parameters and for an answer, from a fixture that yields."""
+"""Tests of the launched guard's parameters and answers, with a fixture that yields."""
 
 from launch import LaunchDescription
 from launch.actions import IncludeLaunchDescription, SetEnvironmentVariable
@@ -11,7 +11,7 @@ from rcl_interfaces.srv import GetParameters
 
 @launch_pytest.fixture
 def launched(domain):
-    """Launch it; the test may begin at once."""
+    """Launch the guard; the test starts immediately."""
     path = PathJoinSubstitution([FindPackageShare('speed_guard'), 'launch', 'guard.launch.py'])
     yield LaunchDescription([
         SetEnvironmentVariable('ROS_DOMAIN_ID', str(domain)),
@@ -22,7 +22,7 @@ def launched(domain):
 
 @pytest.mark.launch(fixture=launched)
 def test_its_parameters_are_those_of_the_file(robot):
-    """Ask the node /speed_guard itself."""
+    """The node /speed_guard has the parameters of the file."""
     client = robot.create_client(GetParameters, '/speed_guard/get_parameters')
     robot.until(client.service_is_ready, seconds=10.0)
     future = client.call_async(GetParameters.Request(names=['stop_distance', 'slow_distance']))
@@ -32,8 +32,8 @@ def test_its_parameters_are_those_of_the_file(robot):
 
 
 @pytest.mark.launch(fixture=launched)
-def test_it_is_at_work(robot):
-    """Half-way between the two, half of the speed is left."""
+def test_it_limits_the_speed(robot):
+    """Half-way between the two distances, the speed is halved."""
     robot.meet(seconds=10.0)
     answers = [robot.see(0.55) or robot.ask(1.0).linear.x for _ in range(20)]
     assert max(answers) == pytest.approx(0.5)

@@ -1,4 +1,4 @@
-"""Every line of safe_speed's contract at its edges, what is no number included."""
+"""Every line of safe_speed's contract at its edges, including None and nan."""
 
 from math import inf, nan, nextafter
 
@@ -18,7 +18,7 @@ def distances(request):
 ])
 @pytest.mark.parametrize('wanted', [0.5, 0.0, -0.5])
 def test_not_zero_stop_slow_is_refused(stop, slow, wanted):
-    """It is the first line: it counts whatever is wanted, and nan is in no order."""
+    """The first line holds for any wanted speed, and nan is not ordered."""
     with pytest.raises(ValueError):
         safe_speed(wanted, 5.0, stop, slow)
     with pytest.raises(ValueError):
@@ -34,26 +34,26 @@ def test_back_is_free(wanted, distance, distances):
 
 @pytest.mark.parametrize('unknown', [None, nan])
 def test_unknown_is_a_stop(unknown, distances):
-    """Both ways of not knowing."""
+    """None and nan are unknown distances."""
     assert safe_speed(0.7, unknown, *distances) == 0.0
 
 
 def test_stop_distance_itself_stops(distances):
-    """At it, and nearer."""
+    """The speed is 0.0 at the stop distance and nearer."""
     stop, _ = distances
     for distance in (stop, nextafter(stop, -inf), stop - 0.25, -inf):
         assert safe_speed(0.7, distance, *distances) == 0.0
 
 
 def test_slow_distance_itself_is_clear(distances):
-    """At it, and farther."""
+    """The speed is not limited at the slow distance and farther."""
     _, slow = distances
     for distance in (slow, slow + 0.25, 1e9, inf):
         assert safe_speed(0.7, distance, *distances) == pytest.approx(0.7)
 
 
 def test_a_line_leads_from_one_to_the_other(distances):
-    """Eighths of the way are eighths of the speed."""
+    """The speed is proportional to the distance from the stop distance."""
     stop, slow = distances
     for eighth in range(1, 8):
         distance = stop + (slow - stop) * eighth / 8.0

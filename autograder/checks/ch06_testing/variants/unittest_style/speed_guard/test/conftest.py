@@ -1,1 +1,1 @@
-"""Each test file has what it needs."""
+"""No shared fixtures: each test file has its own."""

@@ -1,9 +1,10 @@
-"""The node with its executor in a thread, and what it publishes in a queue."""
+"""Tests of the node with an executor in a thread and a queue of received messages."""
 
 import contextlib
 import queue
 import random
 import threading
+import time
 
 import pytest
 import rclpy
@@ -20,55 +21,55 @@ BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class Harness:
-    """Talks to a guard that spins in another thread."""
+    """Communicates with a guard that spins in another thread."""
 
     def __init__(self, context, guard):
         """Connect to the guard's topics."""
         self.guard = guard
         self.node = Node("harness", context=context)
-        self.out = queue.Queue()
-        self.echo = queue.Queue()
+        self.answers = queue.Queue()
+        self.distances = queue.Queue()
         self.raw = self.node.create_publisher(Twist, "cmd_vel_raw", 5)
         self.range = self.node.create_publisher(Range, "distance", BEST_EFFORT)
-        self.node.create_subscription(Twist, "cmd_vel", self.out.put, 50)
-        self.node.create_subscription(Range, "distance", self.echo.put, BEST_EFFORT)
+        self.node.create_subscription(Twist, "cmd_vel", self.answers.put, 50)
+        self.node.create_subscription(Range, "distance", self.distances.put, BEST_EFFORT)
         self.executor = MultiThreadedExecutor(num_threads=2, context=context)
         self.executor.add_node(self.node)
         self.executor.add_node(guard)
-        self.over = threading.Event()
+        self.finished = threading.Event()
         self.thread = threading.Thread(target=self.spin)
         self.thread.start()
 
     def spin(self):
-        """Look now and then whether the test is over: shutdown() can miss a thread that waits."""
-        while not self.over.is_set():
+        """Spin until the test is over. A waiting thread can miss shutdown(), so wait briefly."""
+        while not self.finished.is_set():
             self.executor.spin_once(timeout_sec=0.1)
 
     def distance(self, value):
-        """Publish a distance, and a harmless command: answered, it has been taken."""
+        """Publish a distance, and wait until the guard has processed it."""
         self.range.publish(Range(range=value))
-        self.echo.get(timeout=8.0)
+        self.distances.get(timeout=8.0)
         self.answer(-1.0)
 
     def answer(self, x, z=0.0, y=0.0):
-        """Publish a command and return what comes."""
+        """Publish a command and return the answer."""
         message = Twist()
         message.linear.x, message.linear.y, message.angular.z = x, y, z
         self.raw.publish(message)
-        return self.out.get(timeout=8.0)
+        return self.answers.get(timeout=8.0)
 
     def silence(self, seconds):
-        """Return whether nothing comes for so long."""
+        """Return whether no message arrives for this many seconds."""
         try:
-            self.out.get(timeout=seconds)
+            self.answers.get(timeout=seconds)
         except queue.Empty:
             return True
         return False
 
 
 @contextlib.contextmanager
-def guarded(**parameters):
-    """Start a guard and a harness in a context of their own."""
+def running_guard(**parameters):
+    """Start a guard and a harness in a new context."""
     context = Context()
     rclpy.init(context=context, domain_id=random.randint(2, 90))
     overrides = [Parameter(name, value=value) for name, value in parameters.items()]
@@ -77,7 +78,7 @@ def guarded(**parameters):
     try:
         yield harness
     finally:
-        harness.over.set()
+        harness.finished.set()
         harness.thread.join()
         harness.executor.shutdown()
         guard.destroy_node()
@@ -86,29 +87,29 @@ def guarded(**parameters):
 
 
 def test_name():
-    """The name is what parameters in a file go by."""
-    with guarded() as harness:
+    """The node has the name that parameter files use."""
+    with running_guard() as harness:
         assert "speed_guard" in harness.node.get_node_names()
 
 
 def test_unknown_at_first():
-    """It does not move before it has seen."""
-    with guarded(timeout=30.0) as harness:
+    """It does not move before the first distance."""
+    with running_guard(timeout=30.0) as harness:
         assert harness.answer(0.5).linear.x == 0.0
         assert harness.answer(-0.5).linear.x == -0.5
 
 
 def test_newest():
     """The last distance counts, farther or nearer."""
-    with guarded(timeout=30.0) as harness:
+    with running_guard(timeout=30.0) as harness:
         for value, expected in [(1.0, 0.25), (9.0, 0.5), (0.4, 0.0), (1.25, 0.375)]:
             harness.distance(value)
             assert harness.answer(0.5).linear.x == pytest.approx(expected, abs=1e-6)
 
 
 def test_turn():
-    """A turn goes through, in front of a wall and on a clear way."""
-    with guarded(timeout=30.0) as harness:
+    """A turn is not changed, in front of a wall or on a clear way."""
+    with running_guard(timeout=30.0) as harness:
         for value in (0.4, 9.0):
             harness.distance(value)
             answer = harness.answer(0.5, z=-1.25, y=0.25)
@@ -116,48 +117,59 @@ def test_turn():
 
 
 def test_one_answer():
-    """There is one answer, and then silence."""
-    with guarded(timeout=30.0) as harness:
+    """Each command has exactly one answer."""
+    with running_guard(timeout=30.0) as harness:
         harness.answer(0.5)
         assert harness.silence(0.3)
 
 
 def test_parameters():
     """Both distances are parameters."""
-    with guarded(timeout=30.0, stop_distance=2.0, slow_distance=4.0) as harness:
+    with running_guard(timeout=30.0, stop_distance=2.0, slow_distance=4.0) as harness:
         for value, expected in [(1.9, 0.0), (3.0, 0.25), (4.5, 0.5)]:
             harness.distance(value)
             assert harness.answer(0.5).linear.x == pytest.approx(expected, abs=1e-6)
 
 
+def test_timeout():
+    """The timeout is a parameter, too: with a long one, nothing becomes old within a second."""
+    with running_guard(timeout=30.0) as harness:
+        harness.distance(9.0)
+        assert harness.silence(1.0)
+        assert harness.answer(0.5).linear.x == 0.5
+
+
 def test_stale():
     """An old distance is forgotten."""
-    with guarded(timeout=0.15) as harness:
+    with running_guard(timeout=0.15) as harness:
         harness.distance(9.0)
-        assert harness.out.get(timeout=8.0) == Twist()
+        assert harness.answers.get(timeout=8.0) == Twist()
         assert harness.answer(0.5).linear.x == 0.0
 
 
 def test_stale_under_command():
-    """A planner that goes on talking does not make up for a sensor that is silent."""
-    with guarded(timeout=1.0) as harness:
+    """A distance becomes old although commands continue."""
+    with running_guard(timeout=1.0) as harness:
         harness.distance(9.0)
-        answers = (harness.answer(0.5).linear.x for _ in range(60) if harness.silence(0.05))
-        assert 0.0 in answers
+        end = time.monotonic() + 2.0  # a number of commands would take longer on a busy machine
+        speeds = [harness.answer(0.5).linear.x]
+        while time.monotonic() < end and speeds[-1] > 0.0 and harness.silence(0.05):
+            speeds.append(harness.answer(0.5).linear.x)
+        assert speeds[-1] == 0.0
 
 
 def test_defaults():
     """The defaults are those of the class's docstring."""
-    with guarded() as harness:
+    with running_guard() as harness:
         defaults = {"stop_distance": 0.5, "slow_distance": 1.5, "timeout": 0.5}
         assert {name: harness.guard.get_parameter(name).value for name in defaults} == defaults
 
 
 def test_watchdog():
-    """One stop after a silence, none before it."""
-    with guarded(timeout=0.15) as harness:
+    """The guard publishes one stop after a silence, and none before the first command."""
+    with running_guard(timeout=0.15) as harness:
         assert harness.silence(0.5)
         for _ in range(2):
             harness.answer(-0.5)
-            assert harness.out.get(timeout=8.0) == Twist()
+            assert harness.answers.get(timeout=8.0) == Twist()
             assert harness.silence(0.5)

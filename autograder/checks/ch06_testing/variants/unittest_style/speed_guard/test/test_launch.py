@@ -1,4 +1,4 @@
-"""The launch file, tested beside the launch in a coroutine's place."""
+"""A test of the launch file in a plain function."""
 
 import os
 import time
@@ -21,7 +21,7 @@ DOMAIN = 91 + os.getpid() % 9
 
 @launch_pytest.fixture
 def system():
-    """Launch what the package installs."""
+    """Launch the installed launch file."""
     path = Path(get_package_share_directory("speed_guard")) / "launch" / "guard.launch.py"
     return launch.LaunchDescription(
         [
@@ -33,7 +33,7 @@ def system():
 
 @pytest.mark.launch(fixture=system)
 def test_crawls_at_0_55_m():
-    """Half-way between its 0.3 m and 0.8 m, half of the speed is left."""
+    """Half-way between 0.3 m and 0.8 m, the speed is halved."""
     context = Context()
     rclpy.init(context=context, domain_id=DOMAIN)
     node = rclpy.create_node("tester", context=context)
@@ -43,20 +43,20 @@ def test_crawls_at_0_55_m():
     node.create_subscription(Twist, "cmd_vel", lambda msg: answers.append(msg.linear.x), 10)
     sensor = node.create_publisher(Range, "distance", qos_profile_sensor_data)
     planner = node.create_publisher(Twist, "cmd_vel_raw", 10)
-    wanted = Twist()
-    wanted.linear.x = 1.0
+    command = Twist()
+    command.linear.x = 1.0
 
     def tick():
         sensor.publish(Range(range=0.55))
-        planner.publish(wanted)
+        planner.publish(command)
 
     node.create_timer(0.05, tick)
-    named = False
-    end = time.monotonic() + 10.0
-    while time.monotonic() < end and not (named and pytest.approx(0.5) in answers):
+    is_found = False
+    deadline = time.monotonic() + 10.0
+    while time.monotonic() < deadline and not (is_found and pytest.approx(0.5) in answers):
         executor.spin_once(timeout_sec=0.1)
-        named = "speed_guard" in node.get_node_names()
+        is_found = "speed_guard" in node.get_node_names()
     node.destroy_node()
     rclpy.try_shutdown(context=context)
-    assert named
+    assert is_found
     assert max(answers, default=0.0) == pytest.approx(0.5)

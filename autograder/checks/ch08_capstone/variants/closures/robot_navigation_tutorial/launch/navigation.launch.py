@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters are set for the scope that the nodes are in."""
+"""Start the three nodes in a group, whose scope sets their parameters."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, GroupAction
@@ -24,7 +24,7 @@ PACKAGE = 'robot_navigation_tutorial'
 
 
 def generate_launch_description():
-    """Group the nodes."""
+    """Return two arguments and the group of nodes."""
     file = PathJoinSubstitution([FindPackageShare(PACKAGE), 'config', 'navigation.yaml'])
 
     def node(name):

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A command every tenth of a second, by closures over a few names and a lock."""
+"""A controller of closures: callbacks share the newest clearance behind a lock."""
 
 import threading
 
@@ -30,7 +30,7 @@ from robot_navigation_tutorial.steering import pilot
 
 
 def build():
-    """Return the node; each callback is in a group of its own."""
+    """Return the node; each callback has its own callback group."""
     node = rclpy.create_node('navigation_controller')
     declare(node, 'data_timeout', 0.5, 0.2, 2.0, 'how long a clearance holds, in s')
     declare(node, 'forward_speed', 0.3, 0.05, 0.5, 'how fast it drives, in m/s')
@@ -44,16 +44,16 @@ def build():
     def value(name):
         return node.get_parameter(name).value
 
-    def hear(clearance):
+    def receive(clearance):
         with lock:
             newest[:] = [clearance]
 
-    def switch(request, response):
+    def enable_callback(request, response):
         (enabled.set if request.data else enabled.clear)()
         response.success, response.message = True, str(request.data)
         return response
 
-    def trusted():
+    def trusted_clearance():
         with lock:
             clearance = newest[0] if newest else None
         if clearance is None or not clearance.valid:
@@ -61,26 +61,26 @@ def build():
         expires = Time.from_msg(clearance.header.stamp) + Duration(seconds=value('data_timeout'))
         return None if node.get_clock().now() > expires else clearance
 
-    def tick():
-        twist, clearance = Twist(), trusted()
+    def control():
+        command, clearance = Twist(), trusted_clearance()
         if enabled.is_set() and clearance is not None:
             side = decide(
                 clearance.front, clearance.left, clearance.right, value('safety_distance'))
             if side == 0:
-                twist.linear.x = value('forward_speed')
+                command.linear.x = value('forward_speed')
             else:
-                twist.angular.z = side * value('turn_speed')
-        commands.publish(twist)
+                command.angular.z = side * value('turn_speed')
+        commands.publish(command)
 
     group = MutuallyExclusiveCallbackGroup
-    node.create_subscription(Clearance, 'clearance', hear, 10, callback_group=group())
-    node.create_service(SetBool, 'enable', switch, callback_group=group())
-    node.create_timer(0.1, tick, callback_group=group())
+    node.create_subscription(Clearance, 'clearance', receive, 10, callback_group=group())
+    node.create_service(SetBool, 'enable', enable_callback, callback_group=group())
+    node.create_timer(0.1, control, callback_group=group())
     return node
 
 
 def main(args=None):
-    """Spin in three threads."""
+    """Spin the node in three threads."""
     rclpy.init(args=args)
     executor = MultiThreadedExecutor(num_threads=3)
     executor.add_node(build())

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Sectors, by a generator of readings that count."""
+"""The nearest distance in a sector, by a generator of valid readings."""
 
 import math
 
@@ -20,7 +20,7 @@ FRONT, LEFT, RIGHT = 0.0, 0.5 * math.pi, -0.5 * math.pi
 
 
 def wrapped(angle):
-    """Return an angle between -pi and pi."""
+    """Return the angle, wrapped to between -pi and pi."""
     while angle > math.pi:
         angle -= 2.0 * math.pi
     while angle < -math.pi:
@@ -31,9 +31,9 @@ def wrapped(angle):
 def nearest(scan, middle, half_angle):
     """Return the nearest distance around a bearing."""
     def readings():
-        for place, reading in enumerate(scan.ranges):
-            away = wrapped(scan.angle_min + place * scan.angle_increment - middle)
-            if -half_angle <= away <= half_angle:
+        for index, reading in enumerate(scan.ranges):
+            difference = wrapped(scan.angle_min + index * scan.angle_increment - middle)
+            if -half_angle <= difference <= half_angle:
                 if reading in (math.inf, -math.inf) or scan.range_min <= reading <= scan.range_max:
                     yield reading
 

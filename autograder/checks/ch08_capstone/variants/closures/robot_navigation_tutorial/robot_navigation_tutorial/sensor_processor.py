@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Scans in, clearances out: one coroutine."""
+"""A node whose only callback is a coroutine: it turns scans into clearances."""
 
 import math
 
@@ -34,17 +34,17 @@ def build():
     """Return the node."""
     node = rclpy.create_node('sensor_processor')
     declare(node, 'half_angle', 0.52, 0.1, 0.78, 'half of a sector, in rad')
-    out = node.create_publisher(Clearance, 'clearance', QoSProfile(depth=10))
+    publisher = node.create_publisher(Clearance, 'clearance', QoSProfile(depth=10))
 
     async def process(scan):
         half = node.get_parameter('half_angle').get_parameter_value().double_value
-        answer = Clearance()
-        answer.header = scan.header
-        answer.front, answer.left, answer.right = (
+        clearance = Clearance()
+        clearance.header = scan.header
+        clearance.front, clearance.left, clearance.right = (
             nearest(scan, middle, half) for middle in (FRONT, LEFT, RIGHT))
-        unknown = [math.isnan(each) for each in (answer.front, answer.left, answer.right)]
-        answer.valid = True not in unknown
-        out.publish(answer)
+        distances = (clearance.front, clearance.left, clearance.right)
+        clearance.valid = True not in [math.isnan(distance) for distance in distances]
+        publisher.publish(clearance)
 
     node.create_subscription(
         LaserScan, 'scan', process, LIDAR, callback_group=ReentrantCallbackGroup())
@@ -52,5 +52,5 @@ def build():
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is told to stop."""
     run(build, args)

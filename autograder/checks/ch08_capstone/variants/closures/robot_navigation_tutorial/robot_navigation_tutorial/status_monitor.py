@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Three times of arrival, in a dictionary that closures share."""
+"""A monitor of closures, which share a dictionary of arrival times."""
 
 from geometry_msgs.msg import Twist
 import rclpy
@@ -28,7 +28,7 @@ WATCHED = {'cmd_vel': Twist, 'clearance': Clearance, 'scan': LaserScan}
 
 
 def qos_of(topic):
-    """Return what to ask for."""
+    """Return the quality of service for a subscription to the topic."""
     if topic == 'scan':
         return QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     return QoSProfile(depth=10)
@@ -38,32 +38,32 @@ def build():
     """Return the node."""
     node = rclpy.create_node('status_monitor')
     declare(node, 'silence_timeout', 1.0, 0.2, 1.4, 'seconds')
-    arrived, last = {}, {}
-    out = node.create_publisher(
+    arrivals, newest = {}, {}
+    publisher = node.create_publisher(
         Health, 'health', QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 
-    def listen(topic):
-        def hear(message):
-            arrived[topic], last[topic] = node.get_clock().now(), message
+    def subscribe(topic):
+        def callback(message):
+            arrivals[topic], newest[topic] = node.get_clock().now(), message
 
-        node.create_subscription(WATCHED[topic], topic, hear, qos_of(topic))
+        node.create_subscription(WATCHED[topic], topic, callback, qos_of(topic))
 
     def report():
         now = node.get_clock().now()
         oldest = now - Duration(seconds=node.get_parameter('silence_timeout').value)
-        silent = [topic for topic in WATCHED if topic not in arrived or arrived[topic] < oldest]
+        silent = [topic for topic in WATCHED if topic not in arrivals or arrivals[topic] < oldest]
         health = Health(silent=silent, level=Health.FAILED)
         if not silent:
-            health.level = Health.OK if last['clearance'].valid else Health.DEGRADED
+            health.level = Health.OK if newest['clearance'].valid else Health.DEGRADED
         health.header.stamp = now.to_msg()
-        out.publish(health)
+        publisher.publish(health)
 
     for topic in WATCHED:
-        listen(topic)
+        subscribe(topic)
     node.create_timer(0.5, report)
     return node
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is told to stop."""
     run(build, args)

@@ -12,13 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Where to, as a function that remembers."""
+"""The choice of a turn, by a function that remembers the current one."""
 
 MARGIN = 0.1
 
 
 def pilot():
-    """Return a function from what is seen to a side: 1 for left, -1 for right, 0 for none."""
+    """Return a function from distances to a side: 1 for left, -1 for right, 0 for straight on."""
     side = 0
 
     def decide(front, left, right, limit):

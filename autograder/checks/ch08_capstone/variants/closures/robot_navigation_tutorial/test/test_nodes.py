@@ -12,13 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the monitor asks for."""
+"""The quality of service of the monitor's subscriptions."""
 
 from rclpy.qos import ReliabilityPolicy
 from robot_navigation_tutorial.status_monitor import qos_of
 
 
 def test_a_lidar_is_heard():
-    """Best effort for scans alone."""
+    """Only scans are best effort."""
     assert qos_of('scan').reliability == ReliabilityPolicy.BEST_EFFORT
     assert qos_of('cmd_vel').reliability == ReliabilityPolicy.RELIABLE

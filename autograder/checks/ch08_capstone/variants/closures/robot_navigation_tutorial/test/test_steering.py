@@ -12,13 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The pilot."""
+"""The turns of the pilot."""
 
 from robot_navigation_tutorial.steering import pilot
 
 
 def test_the_pilot_keeps_its_mind():
-    """Right, right again though the left is wider now, then straight on."""
+    """It turns right, keeps that while the left is wider, and then drives straight on."""
     decide = pilot()
     assert decide(0.5, 1.0, 2.0, 0.6) == -1
     assert decide(0.65, 3.0, 1.0, 0.6) == -1

@@ -10,7 +10,7 @@ PACKAGE = 'robot_navigation_tutorial'
 
 
 def generate_launch_description():
-    """Return a group of nodes that share the file and the clock."""
+    """Return two arguments and the group of nodes, whose scope sets their parameters."""
     file = PathJoinSubstitution([FindPackageShare(PACKAGE), 'config', 'navigation.yaml'])
 
     def node(name):

@@ -1,4 +1,4 @@
-"""The node that drives: slower where less room is, and slower turns when nearly done."""
+"""The node that drives, more slowly where there is less room."""
 
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
@@ -19,12 +19,12 @@ PARAMETERS = (
 
 
 def nanoseconds(stamp):
-    """Return a stamp as a whole number."""
+    """Return a stamp in nanoseconds."""
     return stamp.sec * 10**9 + stamp.nanosec
 
 
 class NavigationController(Node):
-    """Drives, turns or stands."""
+    """Drives, turns or stands still."""
 
     def __init__(self, **kwargs):
         """Create the node."""
@@ -46,7 +46,7 @@ class NavigationController(Node):
         self.newest = clearance
 
     def enable_callback(self, request, response):
-        """Hold or let go."""
+        """Let the robot move, or hold it still."""
         if self.enabled != request.data:
             self.get_logger().info('enabled' if request.data else 'disabled')
         self.enabled = request.data
@@ -73,7 +73,7 @@ class NavigationController(Node):
         return command
 
     def is_trusted(self, clearance):
-        """Say whether the clearance is there, valid and young."""
+        """Return whether there is a clearance, it is valid, and it is not too old."""
         if clearance is None or not clearance.valid:
             return False
         age = self.get_clock().now().nanoseconds - nanoseconds(clearance.header.stamp)

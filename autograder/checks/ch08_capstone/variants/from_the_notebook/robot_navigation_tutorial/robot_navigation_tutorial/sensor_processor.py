@@ -1,4 +1,4 @@
-"""The node that sees."""
+"""The node that turns scans into clearances."""
 
 import math
 
@@ -21,16 +21,16 @@ class SensorProcessor(Node):
         """Create the node."""
         super().__init__('sensor_processor', **kwargs)
         declare(self, 'half_angle', 0.52, 0.1, 0.78, 'half the width of a sector in rad')
-        self.out = self.create_publisher(Clearance, 'clearance', 10)
+        self.publisher = self.create_publisher(Clearance, 'clearance', 10)
         self.create_subscription(
             LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data)
 
     def scan_callback(self, scan):
         """Publish the clearance of a scan."""
-        half = self.get_parameter('half_angle').value
-        room = {name: nearest(scan, middle, half) for name, middle in SECTORS.items()}
-        valid = not any(map(math.isnan, room.values()))
-        self.out.publish(Clearance(header=scan.header, valid=valid, **room))
+        half_angle = self.get_parameter('half_angle').value
+        distances = {name: nearest(scan, middle, half_angle) for name, middle in SECTORS.items()}
+        valid = not any(map(math.isnan, distances.values()))
+        self.publisher.publish(Clearance(header=scan.header, valid=valid, **distances))
 
 
 def main(args=None):

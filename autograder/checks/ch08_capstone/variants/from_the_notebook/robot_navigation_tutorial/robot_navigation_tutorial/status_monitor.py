@@ -1,4 +1,4 @@
-"""The node that watches."""
+"""The node that reports the health of the navigation."""
 
 from functools import partial
 
@@ -22,7 +22,7 @@ WATCHED = {
 
 
 class StatusMonitor(Node):
-    """Says twice a second how the navigation is."""
+    """Publishes two reports a second."""
 
     def __init__(self, **kwargs):
         """Create the node."""
@@ -37,7 +37,7 @@ class StatusMonitor(Node):
         self.create_timer(REPORT_PERIOD, self.report)
 
     def on_message(self, topic, message):
-        """Remember when it came, and the newest clearance."""
+        """Remember the time of the message, and the newest clearance."""
         self.arrivals[topic] = self.get_clock().now().nanoseconds
         if topic == 'clearance':
             self.clearance = message

@@ -1,4 +1,4 @@
-"""Which way to go."""
+"""The choice of a turn."""
 
 STRAIGHT, LEFT, RIGHT = 0, 1, -1
 MARGIN = 0.1

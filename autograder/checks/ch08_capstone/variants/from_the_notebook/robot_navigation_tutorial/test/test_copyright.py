@@ -1,4 +1,4 @@
-"""The sources have no licence at their heads, as the cells of the notebook write them."""
+"""The copyright headers, which the sources from the notebook do not have."""
 
 from ament_copyright.main import main
 import pytest
@@ -8,5 +8,5 @@ import pytest
 @pytest.mark.copyright
 @pytest.mark.linter
 def test_copyright():
-    """Each file says whose it is."""
+    """Each file has a copyright header."""
     assert main(argv=['.', 'test']) == 0, 'Found errors'

@@ -1,4 +1,4 @@
-"""What the nodes watch and offer."""
+"""The defaults of the controller, and the topics of the monitor."""
 
 from robot_navigation_tutorial.navigation_controller import PARAMETERS
 from robot_navigation_tutorial.status_monitor import WATCHED
@@ -11,5 +11,5 @@ def test_each_default_is_in_its_range():
 
 
 def test_three_topics_are_watched():
-    """The robot's sensor, its eyes and its hands."""
+    """The monitor watches the three topics of the contract."""
     assert sorted(WATCHED) == ['clearance', 'cmd_vel', 'scan']

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The three nodes, put together by substitutions."""
+"""Start the three nodes by a function that runs once the arguments are known."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -22,11 +22,11 @@ from launch_ros.substitutions import FindPackageShare
 
 
 def start(context):
-    """Return the nodes, once the arguments are known."""
+    """Return the nodes, with the values of the arguments."""
     file = LaunchConfiguration('params_file').perform(context)
-    sim = LaunchConfiguration('use_sim_time').perform(context).lower() == 'true'
+    use_sim_time = LaunchConfiguration('use_sim_time').perform(context).lower() == 'true'
     common = {'package': 'robot_navigation_tutorial', 'output': 'screen'}
-    parameters = [file, {'use_sim_time': sim}]
+    parameters = [file, {'use_sim_time': use_sim_time}]
     return [
         Node(executable=name, name=name, parameters=parameters, **common)
         for name in ('status_monitor', 'navigation_controller', 'sensor_processor')
@@ -34,7 +34,7 @@ def start(context):
 
 
 def generate_launch_description():
-    """Declare two arguments, then start."""
+    """Declare two arguments, then start the nodes."""
     default = [FindPackageShare('robot_navigation_tutorial'), '/config/navigation.yaml']
     return LaunchDescription(
         [

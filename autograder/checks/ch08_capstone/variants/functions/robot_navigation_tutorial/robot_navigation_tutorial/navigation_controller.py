@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Clearances in, velocities out: a node as a part of a controller, and two threads."""
+"""A controller that has a node, and runs in two threads."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -37,62 +37,62 @@ class Controller:
     def __init__(self, node):
         self.node = node
         self.turn = Turn.NONE
-        self.seen = None
+        self.newest = None
         self.held = False
         for name, (default, lowest, highest, unit) in PARAMETERS.items():
             limits = FloatingPointRange(from_value=lowest, to_value=highest)
             node.declare_parameter(
                 name, default, ParameterDescriptor(description=unit, floating_point_range=[limits])
             )
-        self.motor = node.create_publisher(Twist, 'cmd_vel', 10)
+        self.publisher = node.create_publisher(Twist, 'cmd_vel', 10)
         node.create_subscription(
-            Clearance, 'clearance', self.see, 10, callback_group=ReentrantCallbackGroup()
+            Clearance, 'clearance', self.receive, 10, callback_group=ReentrantCallbackGroup()
         )
         node.create_service(SetBool, 'enable', self.hold)
         node.create_timer(0.1, self.tick, callback_group=MutuallyExclusiveCallbackGroup())
 
     def parameter(self, name):
-        """Return a parameter's value of now."""
+        """Return the current value of a parameter."""
         return self.node.get_parameter(name).value
 
-    def see(self, clearance):
-        """Remember what was seen, with the time of the scan in seconds."""
+    def receive(self, clearance):
+        """Remember the clearance, with the time of its scan in seconds."""
         stamp = clearance.header.stamp
-        self.seen = (stamp.sec + stamp.nanosec * 1e-9, clearance)
+        self.newest = (stamp.sec + stamp.nanosec * 1e-9, clearance)
 
     def hold(self, request, response):
-        """Hold the robot, or let it go."""
+        """Hold the robot still, or let it drive."""
         self.held = not request.data
         response.success, response.message = True, 'held' if self.held else 'free'
         return response
 
     def tick(self):
-        """Say what to do."""
-        self.motor.publish(self.command())
+        """Publish the command of this moment."""
+        self.publisher.publish(self.command())
 
     def command(self):
-        """Return the velocity of this moment."""
+        """Return the command of this moment."""
         stop = Twist()
-        if self.held or self.seen is None:
+        if self.held or self.newest is None:
             return stop
-        then, clearance = self.seen
+        scan_time, clearance = self.newest
         now = self.node.get_clock().now().nanoseconds * 1e-9
-        if not clearance.valid or now - then > self.parameter('data_timeout'):
+        if not clearance.valid or now - scan_time > self.parameter('data_timeout'):
             return stop
         limit = self.parameter('safety_distance')
         self.turn = decide(clearance.front, clearance.left, clearance.right, limit, self.turn)
-        go = Twist()
+        command = Twist()
         if self.turn is Turn.NONE:
-            # Slower in front of an obstacle: a robot may be more careful than it has to be.
-            near = clearance.front < limit + 0.2
-            go.linear.x = self.parameter('forward_speed') * (0.5 if near else 1.0)
+            # Slower in front of an obstacle: forward_speed is only the limit.
+            is_near = clearance.front < limit + 0.2
+            command.linear.x = self.parameter('forward_speed') * (0.5 if is_near else 1.0)
         else:
-            go.angular.z = float(self.turn) * self.parameter('turn_speed')
-        return go
+            command.angular.z = float(self.turn) * self.parameter('turn_speed')
+        return command
 
 
 def main():
-    """Run until told to stop."""
+    """Run the node until it is told to stop."""
     rclpy.init()
     try:
         node = rclpy.create_node('navigation_controller')

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Sectors of a scan, in the style of arrays."""
+"""The nearest distance in a sector, computed with arrays."""
 
 import math
 
@@ -24,8 +24,8 @@ FRONT, LEFT, RIGHT = 0.0, math.pi / 2, -math.pi / 2
 def nearest(scan, middle, half_angle):
     """Return the nearest distance around a bearing, or nan."""
     ranges = np.asarray(scan.ranges, dtype=float)
-    away = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment - middle
-    away = np.abs(np.arctan2(np.sin(away), np.cos(away)))
-    counts = np.isinf(ranges) | ((ranges >= scan.range_min) & (ranges <= scan.range_max))
-    chosen = ranges[counts & (away <= half_angle)]
-    return float(chosen.min()) if chosen.size else math.nan
+    difference = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment - middle
+    difference = np.abs(np.arctan2(np.sin(difference), np.cos(difference)))
+    is_valid = np.isinf(ranges) | ((ranges >= scan.range_min) & (ranges <= scan.range_max))
+    valid = ranges[is_valid & (difference <= half_angle)]
+    return float(valid.min()) if valid.size else math.nan

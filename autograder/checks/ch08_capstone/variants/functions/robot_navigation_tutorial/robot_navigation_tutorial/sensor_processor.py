@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Scans in, clearances out, without a class."""
+"""A node without a class: it turns scans into clearances."""
 
 import math
 
@@ -25,28 +25,28 @@ from robot_navigation_tutorial.sectors import FRONT, LEFT, RIGHT, nearest
 from sensor_msgs.msg import LaserScan
 
 
-def process(half, scan):
-    """Turn a scan into a clearance."""
-    answer = Clearance(header=scan.header)
-    answer.front = nearest(scan, FRONT, half)
-    answer.left = nearest(scan, LEFT, half)
-    answer.right = nearest(scan, RIGHT, half)
-    answer.valid = not (
-        math.isnan(answer.front) or math.isnan(answer.left) or math.isnan(answer.right)
+def process(half_angle, scan):
+    """Return the clearance of a scan."""
+    clearance = Clearance(header=scan.header)
+    clearance.front = nearest(scan, FRONT, half_angle)
+    clearance.left = nearest(scan, LEFT, half_angle)
+    clearance.right = nearest(scan, RIGHT, half_angle)
+    clearance.valid = not (
+        math.isnan(clearance.front) or math.isnan(clearance.left) or math.isnan(clearance.right)
     )
-    return answer
+    return clearance
 
 
 def make(**kwargs):
-    """Return the node with its wires connected."""
+    """Return the node with its publisher and subscription."""
     node = rclpy.create_node('sensor_processor', **kwargs)
-    half = ParameterDescriptor(description='half of a sector in rad')
-    half.floating_point_range = [FloatingPointRange(from_value=0.1, to_value=0.78)]
-    node.declare_parameter('half_angle', 0.52, half)
-    out = node.create_publisher(Clearance, 'clearance', 10)
+    descriptor = ParameterDescriptor(description='half of a sector in rad')
+    descriptor.floating_point_range = [FloatingPointRange(from_value=0.1, to_value=0.78)]
+    node.declare_parameter('half_angle', 0.52, descriptor)
+    publisher = node.create_publisher(Clearance, 'clearance', 10)
 
     def on_scan(scan):
-        out.publish(process(node.get_parameter('half_angle').value, scan))
+        publisher.publish(process(node.get_parameter('half_angle').value, scan))
 
     best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     node.create_subscription(LaserScan, 'scan', on_scan, best_effort)
@@ -54,7 +54,7 @@ def make(**kwargs):
 
 
 def main():
-    """Run until told to stop."""
+    """Run the node until it is told to stop."""
     rclpy.init()
     node = make()
     executor = SingleThreadedExecutor()

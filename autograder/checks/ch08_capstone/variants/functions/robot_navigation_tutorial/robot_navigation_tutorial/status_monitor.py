@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A watchdog that asks each topic when it last spoke."""
+"""A watchdog that remembers when the last message came on each topic."""
 
 from functools import partial
 
@@ -45,7 +45,7 @@ NEVER = float('-inf')
 
 
 class Watchdog(Node):
-    """One subscription a topic, all with the same callback."""
+    """Has one subscription for each topic, all with the same callback."""
 
     def __init__(self):
         super().__init__('status_monitor')
@@ -55,33 +55,34 @@ class Watchdog(Node):
             1.0,
             ParameterDescriptor(description='seconds of silence', floating_point_range=[limits]),
         )
-        self.heard_at = dict.fromkeys(TOPICS, NEVER)
+        self.arrivals = dict.fromkeys(TOPICS, NEVER)
         self.newest = {}
         for name, (kind, qos) in TOPICS.items():
-            self.create_subscription(kind, name, partial(self.heard, name), qos)
-        self.out = self.create_publisher(Health, 'health', LATCHED)
-        self.timer = self.create_timer(0.5, self.speak)
+            self.create_subscription(kind, name, partial(self.receive, name), qos)
+        self.publisher = self.create_publisher(Health, 'health', LATCHED)
+        self.timer = self.create_timer(0.5, self.report)
 
-    def heard(self, name, message):
-        """Remember the message and its time."""
-        self.heard_at[name] = self.seconds()
+    def receive(self, name, message):
+        """Remember the message and the time at which it came."""
+        self.arrivals[name] = self.seconds()
         self.newest[name] = message
 
     def seconds(self):
-        """Return the time of now in seconds."""
+        """Return the current time in seconds."""
         return self.get_clock().now().nanoseconds / 1e9
 
-    def speak(self):
-        """Publish the state."""
+    def report(self):
+        """Publish the health of this moment."""
         oldest = self.seconds() - self.get_parameter('silence_timeout').value
-        report = Health(silent=sorted(n for n, then in self.heard_at.items() if then < oldest))
+        silent = sorted(name for name, time in self.arrivals.items() if time < oldest)
+        report = Health(silent=silent)
         report.header.stamp = self.get_clock().now().to_msg()
         report.level = Health.FAILED if report.silent else Health.OK
         if not report.silent and not self.newest['clearance'].valid:
             report.level = Health.DEGRADED
-        self.out.publish(report)
+        self.publisher.publish(report)
 
 
 def main():
-    """Run until told to stop."""
+    """Run the node until it is told to stop."""
     run(Watchdog)

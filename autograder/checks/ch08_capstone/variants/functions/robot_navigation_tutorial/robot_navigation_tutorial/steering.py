@@ -12,23 +12,23 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Pure decisions: a turn is a state, and it ends when the way is clear."""
+"""The choice of a turn, as a pure function of distances and the last turn."""
 
 from enum import IntEnum
 
 
 class Turn(IntEnum):
-    """Where the robot turns."""
+    """The direction in which the robot turns."""
 
     RIGHT = -1
     NONE = 0
     LEFT = 1
 
 
-def decide(front, left, right, limit, before):
+def decide(front, left, right, limit, last):
     """Return the next turn."""
-    if before is Turn.NONE and front < limit:
+    if last is Turn.NONE and front < limit:
         return Turn.RIGHT if right > left else Turn.LEFT
-    if before is not Turn.NONE and front >= limit + 0.1:
+    if last is not Turn.NONE and front >= limit + 0.1:
         return Turn.NONE
-    return before
+    return last

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The parts without ROS."""
+"""The clearance of a scan, without a node."""
 
 import math
 from types import SimpleNamespace
@@ -22,18 +22,18 @@ from sensor_msgs.msg import LaserScan
 
 
 def test_a_blind_scan_is_not_valid():
-    """Nothing but nan."""
+    """Each reading is nan."""
     scan = LaserScan(range_min=0.1, range_max=5.0, angle_increment=0.1, ranges=[math.nan] * 62)
     assert not process(0.5, scan).valid
 
 
 def test_a_wall_ahead_is_seen():
-    """At bearing 0."""
+    """Only the reading at bearing 0 is nearer."""
     scan = LaserScan(range_min=0.1, range_max=5.0, angle_increment=0.1, ranges=[2.0] * 62)
     scan.ranges[0] = 1.0
-    found = process(0.5, scan)
-    assert found.valid
-    assert SimpleNamespace(front=found.front, left=found.left).__dict__ == {
+    clearance = process(0.5, scan)
+    assert clearance.valid
+    assert SimpleNamespace(front=clearance.front, left=clearance.left).__dict__ == {
         'front': 1.0,
         'left': 2.0,
     }

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The nodes are made once the arguments are known."""
+"""Start the three nodes by a function that runs once the arguments are known."""
 
 import os
 
@@ -26,7 +26,7 @@ SHARE = get_package_share_directory('robot_navigation_tutorial')
 
 
 def start(context):
-    """Return the nodes."""
+    """Return the nodes, with the values of the arguments."""
     file = LaunchConfiguration('params_file').perform(context)
     simulated = LaunchConfiguration('use_sim_time').perform(context).lower() == 'true'
     return [
@@ -38,7 +38,7 @@ def start(context):
 
 
 def generate_launch_description():
-    """Declare the arguments."""
+    """Return the arguments and the nodes."""
     return LaunchDescription([
         DeclareLaunchArgument(
             'params_file', default_value=os.path.join(SHARE, 'config', 'navigation.yaml'),

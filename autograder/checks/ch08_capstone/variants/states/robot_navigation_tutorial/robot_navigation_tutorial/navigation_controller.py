@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The controller as a machine of states: what it may do is asked first, what it does after."""
+"""The controller as a state machine, which stands still while it cannot trust its data."""
 
 from geometry_msgs.msg import Twist, Vector3
 from rclpy.node import Node
@@ -33,40 +33,40 @@ PARAMETERS = (
 
 
 class NavigationController(Node):
-    """Ticks ten times a second."""
+    """Publishes ten commands a second."""
 
     def __init__(self, **kwargs):
-        """Begin straight on, with nothing known."""
+        """Start in the state Straight, without a clearance."""
         super().__init__('navigation_controller', **kwargs)
         for parameter in PARAMETERS:
             declare(self, *parameter)
         self.newest, self.state, self.may_move = None, Straight(), True
         self.commands = self.create_publisher(Twist, 'cmd_vel', 10)
-        self.create_subscription(Clearance, 'clearance', self.take, 10)
+        self.create_subscription(Clearance, 'clearance', self.receive, 10)
         self.create_service(SetBool, 'enable', self.enable)
         self.create_timer(0.1, lambda: self.commands.publish(self.command()))
 
-    def take(self, clearance):
-        """Keep the newest."""
+    def receive(self, clearance):
+        """Remember the newest clearance."""
         self.newest = clearance
 
     def enable(self, request, response):
-        """Let it move, or not."""
+        """Let the robot move, or hold it still."""
         self.may_move = bool(request.data)
         response.success = True
         return response
 
-    def sees(self):
-        """Return whether what it knows is good enough to move by."""
+    def is_clearance_trusted(self):
+        """Return whether the newest clearance is valid and not too old."""
         if self.newest is None or not self.newest.valid:
             return False
-        taken = Time.from_msg(self.newest.header.stamp)
-        age = (self.get_clock().now() - taken).nanoseconds / 1e9
+        scan_time = Time.from_msg(self.newest.header.stamp)
+        age = (self.get_clock().now() - scan_time).nanoseconds / 1e9
         return age <= self.get_parameter('data_timeout').value
 
     def command(self):
         """Return the command of this moment."""
-        if not (self.may_move and self.sees()):
+        if not (self.may_move and self.is_clearance_trusted()):
             return Twist()
         limit = self.get_parameter('safety_distance').value
         self.state = self.state.next(self.newest, limit)
@@ -77,5 +77,5 @@ class NavigationController(Node):
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is told to stop."""
     run(NavigationController, args)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Sectors as cones: a cone knows which bearings it holds."""
+"""Sectors as cones that contain bearings."""
 
 from dataclasses import dataclass
 import math
@@ -22,29 +22,29 @@ FRONT, LEFT, RIGHT = 0.0, math.pi / 2, -math.pi / 2
 
 @dataclass(frozen=True)
 class Cone:
-    """A sector."""
+    """A sector: the bearing of its middle, and half its angle."""
 
     middle: float
     half: float
 
     def __contains__(self, bearing):
-        """Go the shorter way round."""
-        away = abs(bearing - self.middle) % (2.0 * math.pi)
-        return min(away, 2.0 * math.pi - away) <= self.half
+        """Return whether the cone contains a bearing, measured the shorter way round."""
+        difference = abs(bearing - self.middle) % (2.0 * math.pi)
+        return min(difference, 2.0 * math.pi - difference) <= self.half
 
 
-def counts(reading, lowest, highest):
-    """Say whether a reading says anything."""
+def is_valid(reading, lowest, highest):
+    """Return whether a reading is infinite or within the limits."""
     if math.isnan(reading):
         return False
     return math.isinf(reading) or lowest <= reading <= highest
 
 
 def nearest(scan, middle, half_angle):
-    """Return the smallest reading that counts in a cone."""
-    cone, found, bearing = Cone(middle, half_angle), None, scan.angle_min
+    """Return the smallest valid reading in a cone, or nan."""
+    cone, smallest, bearing = Cone(middle, half_angle), None, scan.angle_min
     for number, reading in enumerate(scan.ranges):
         bearing = scan.angle_min + number * scan.angle_increment
-        if bearing in cone and counts(reading, scan.range_min, scan.range_max):
-            found = reading if found is None else min(found, reading)
-    return math.nan if found is None else found
+        if bearing in cone and is_valid(reading, scan.range_min, scan.range_max):
+            smallest = reading if smallest is None else min(smallest, reading)
+    return math.nan if smallest is None else smallest

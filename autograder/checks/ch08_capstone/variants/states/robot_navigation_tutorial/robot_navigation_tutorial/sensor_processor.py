@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A processor that has a node."""
+"""A processor that uses a node, instead of being one."""
 
 import math
 
@@ -33,21 +33,21 @@ class Processor:
     """Turns scans into clearances."""
 
     def __init__(self, node):
-        """Connect the node."""
-        self.half = lambda: node.get_parameter('half_angle').value
+        """Create the publisher and the subscription on the node."""
+        self.half_angle = lambda: node.get_parameter('half_angle').value
         self.publish = node.create_publisher(Clearance, 'clearance', 10).publish
-        node.create_subscription(LaserScan, 'scan', self.take, qos_profile_sensor_data)
+        node.create_subscription(LaserScan, 'scan', self.receive, qos_profile_sensor_data)
 
-    def take(self, scan):
-        """Publish a clearance."""
+    def receive(self, scan):
+        """Publish the clearance of a scan."""
         distances = {
-            name: nearest(scan, middle, self.half()) for name, middle in SECTORS.items()}
-        known = all(not math.isnan(distance) for distance in distances.values())
-        self.publish(Clearance(header=scan.header, valid=known, **distances))
+            name: nearest(scan, middle, self.half_angle()) for name, middle in SECTORS.items()}
+        is_known = all(not math.isnan(distance) for distance in distances.values())
+        self.publish(Clearance(header=scan.header, valid=is_known, **distances))
 
 
 def make(**kwargs):
-    """Return the node with a processor on it."""
+    """Return the node, with a processor that uses it."""
     node = Node('sensor_processor', **kwargs)
     declare(node, 'half_angle', 0.52, 0.1, 0.78, 'rad, half of what a sector spans')
     node.processor = Processor(node)
@@ -55,7 +55,7 @@ def make(**kwargs):
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is told to stop."""
     run(make, args)
 
 

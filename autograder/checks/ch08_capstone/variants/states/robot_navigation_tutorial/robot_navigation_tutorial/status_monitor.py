@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The monitor as a row of watches, one for each topic."""
+"""The monitor as a set of watches, one for each topic."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ from robot_navigation_tutorial.running import run
 
 @dataclass
 class Watch:
-    """When a topic was last heard, and what."""
+    """The last message on a topic, and the time at which it came."""
 
     node: Node
     topic: str
@@ -37,19 +37,19 @@ class Watch:
     when: Time | None = None
 
     def __call__(self, message):
-        """Hear a message."""
+        """Remember a message."""
         self.message, self.when = message, self.node.get_clock().now()
 
     def is_silent(self, now, seconds):
-        """Return whether nothing has come for so long."""
+        """Return whether no message has come for more than `seconds`."""
         return self.when is None or (now - self.when).nanoseconds > seconds * 1e9
 
 
 class StatusMonitor(Node):
-    """Reports twice a second."""
+    """Publishes two reports a second."""
 
     def __init__(self, **kwargs):
-        """Hang a watch on each topic."""
+        """Create a watch and a subscription for each topic."""
         super().__init__('status_monitor', **kwargs)
         declare(self, 'silence_timeout', 1.0, 0.2, 1.4, 's until a topic counts as silent')
         kinds = {
@@ -65,13 +65,13 @@ class StatusMonitor(Node):
         self.create_timer(0.5, self.report)
 
     def level(self, silent):
-        """Return the level."""
+        """Return the level of the report."""
         if silent:
             return Health.FAILED
         return Health.OK if self.watches['clearance'].message.valid else Health.DEGRADED
 
     def report(self):
-        """Publish the health."""
+        """Publish the health of this moment."""
         now, seconds = self.get_clock().now(), self.get_parameter('silence_timeout').value
         silent = [name for name, watch in self.watches.items() if watch.is_silent(now, seconds)]
         health = Health(level=self.level(silent), silent=silent)
@@ -80,5 +80,5 @@ class StatusMonitor(Node):
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is told to stop."""
     run(StatusMonitor, args)

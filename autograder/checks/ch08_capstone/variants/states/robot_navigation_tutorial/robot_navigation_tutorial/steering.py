@@ -12,18 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A robot is in a state, and each state knows which one comes next."""
+"""The states of the robot; each state returns the next one."""
 
 MARGIN = 0.1
 
 
 class Straight:
-    """Drives on."""
+    """Drives straight on."""
 
     side = 0
 
     def next(self, clearance, limit):
-        """Turn where something is nearer than the limit."""
+        """Return a turn if something is nearer than the limit, otherwise this state."""
         if clearance.front >= limit:
             return self
         return Turning(1 if clearance.left >= clearance.right else -1)
@@ -33,9 +33,9 @@ class Turning:
     """Turns to one side until the way is clear."""
 
     def __init__(self, side):
-        """Remember the side."""
+        """Set the side: 1 is left, -1 right."""
         self.side = side
 
     def next(self, clearance, limit):
-        """Go straight on where it is clear enough."""
+        """Return Straight once the way is clear, otherwise this state."""
         return Straight() if clearance.front - limit >= MARGIN else self

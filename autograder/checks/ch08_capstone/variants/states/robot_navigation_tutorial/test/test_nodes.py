@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A watch."""
+"""The silence of a topic."""
 
 from types import SimpleNamespace
 
@@ -22,7 +22,7 @@ from robot_navigation_tutorial.status_monitor import Watch
 
 
 def test_a_watch_tells_silence():
-    """Nothing yet, then something, then nothing for too long."""
+    """Test it before the first message, shortly after it, and after the limit."""
     clock = ROSClock()
     watch = Watch(SimpleNamespace(get_clock=lambda: clock), 'scan')
     assert watch.is_silent(clock.now(), 1.0)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The states and their order."""
+"""The states and their transitions."""
 
 from types import SimpleNamespace
 
@@ -20,7 +20,7 @@ from robot_navigation_tutorial.steering import Straight, Turning
 
 
 def test_a_turn_goes_to_the_wider_side_and_ends_beyond_the_limit():
-    """Left, and straight on once it is clear."""
+    """It goes left, and straight on once the way is clear."""
     turning = Straight().next(SimpleNamespace(front=0.3, left=2.0, right=1.0), 0.6)
     assert turning.side == 1
     assert turning.next(SimpleNamespace(front=0.65), 0.6) is turning

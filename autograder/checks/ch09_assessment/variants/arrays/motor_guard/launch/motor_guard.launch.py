@@ -1,4 +1,4 @@
-"""The three nodes in a group, the guard's threshold worked out by an expression."""
+"""The three nodes in a group, with an expression that computes the guard's threshold."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, GroupAction
@@ -8,7 +8,7 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 
 def generate_launch_description():
-    """Name each node once."""
+    """Return the argument and the group of the three nodes."""
     hot = ParameterValue(PythonExpression(['float(', LaunchConfiguration('hot'), ')']), value_type=float)
     return LaunchDescription([
         DeclareLaunchArgument('hot', default_value='60.0', description='degrees Celsius'),

@@ -1,4 +1,4 @@
-"""A moving average over an array that is rolled."""
+"""A moving average over an array with the newest readings."""
 
 from motor_guard_interfaces.msg import Temperature
 import numpy as np
@@ -10,10 +10,10 @@ from motor_guard.running import run
 
 
 class Smoother(Node):
-    """Averages the newest readings; a place that was never filled holds nan."""
+    """A node that averages an array, whose unused places contain nan."""
 
     def __init__(self, **kwargs):
-        """Make an empty window."""
+        """Create an empty window and the endpoints."""
         super().__init__('smoother', **kwargs)
         limits = ParameterDescriptor(description='readings', read_only=True)
         limits.integer_range.append(IntegerRange(from_value=1, to_value=100, step=1))
@@ -23,7 +23,7 @@ class Smoother(Node):
         self.create_subscription(Temperature, 'temperature', self.smooth, QoSProfile(depth=10))
 
     def smooth(self, reading):
-        """Roll a number in, and publish the mean of what is no nan."""
+        """Store a finite reading, and publish the mean of the stored ones."""
         if not np.isfinite(reading.celsius):
             return
         self.window = np.roll(self.window, 1)
@@ -34,5 +34,5 @@ class Smoother(Node):
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is interrupted."""
     run(Smoother, args)

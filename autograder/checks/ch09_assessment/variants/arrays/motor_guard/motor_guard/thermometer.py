@@ -1,4 +1,4 @@
-"""A thermometer with a table of one turn."""
+"""A thermometer with a table of one sine period."""
 
 from motor_guard_interfaces.msg import Temperature
 import numpy as np
@@ -7,18 +7,18 @@ from rclpy.node import Node
 
 from motor_guard.running import run
 
-TURN = np.sin(2.0 * np.pi * np.arange(20) / 20)
+SINE = np.sin(2.0 * np.pi * np.arange(20) / 20)
 
 
 class Thermometer(Node):
-    """Goes round the table."""
+    """A node that publishes the entries of a table in turn."""
 
     def __init__(self, **kwargs):
-        """Work the table out once."""
+        """Compute the table, and create the publisher and the timer."""
         super().__init__('thermometer', **kwargs)
         table = [('period', 0.5), ('mean', 50.0), ('swing', 20.0)]
-        period, mean, swing = (each.value for each in self.declare_parameters('', table))
-        self.readings, self.number = mean + swing * TURN, 0
+        period, mean, swing = (parameter.value for parameter in self.declare_parameters('', table))
+        self.readings, self.number = mean + swing * SINE, 0
         self.out = self.create_publisher(Temperature, 'temperature', 10)
         self.create_timer(period, self.measure, callback_group=MutuallyExclusiveCallbackGroup())
 
@@ -32,5 +32,5 @@ class Thermometer(Node):
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is interrupted."""
     run(Thermometer, args)

@@ -7,15 +7,15 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 
 def generate_launch_description():
-    """Declare hot, and start everything."""
-    described = LaunchDescription()
-    described.add_action(DeclareLaunchArgument(
+    """Declare the argument hot, and start all nodes."""
+    launch_description = LaunchDescription()
+    launch_description.add_action(DeclareLaunchArgument(
         'hot', default_value='60.0', description='where the fan starts'))
     for name in 'thermometer', 'smoother':
-        described.add_action(Node(package='motor_guard', executable=name, name=name))
+        launch_description.add_action(Node(package='motor_guard', executable=name, name=name))
     hot = ParameterValue(LaunchConfiguration('hot'), value_type=float)
-    described.add_action(GroupAction([
+    launch_description.add_action(GroupAction([
         SetParameter('hot', hot),
         Node(package='motor_guard', executable='guard', name='guard', output='screen'),
     ]))
-    return described
+    return launch_description

@@ -1,4 +1,4 @@
-"""The fan's states as functions: each returns the next one."""
+"""The guard with a method for each state of the fan, which returns the next state."""
 import math
 
 from motor_guard_interfaces.msg import Decision, Temperature
@@ -8,8 +8,8 @@ from rclpy.node import Node
 from motor_guard.running import run
 
 
-class Flutter(Exception):
-    """The two temperatures are the wrong way round."""
+class ThresholdError(Exception):
+    """The two thresholds are in the wrong order."""
 
 
 class Guard(Node):
@@ -22,7 +22,7 @@ class Guard(Node):
         self.hot = self.get_parameter('hot').get_parameter_value().double_value
         self.cool = self.get_parameter('cool').get_parameter_value().double_value
         if math.isnan(self.hot) or math.isnan(self.cool) or self.cool >= self.hot:
-            raise Flutter(f'cool = {self.cool} must be less than hot = {self.hot}')
+            raise ThresholdError(f'cool = {self.cool} must be less than hot = {self.hot}')
         self.state = self.off
         self.pub = self.create_publisher(Decision, 'decision', 10)
         self.sub = self.create_subscription(Temperature, 'smoothed', self.decide, 10)
@@ -34,9 +34,9 @@ class Guard(Node):
         return self.off if celsius <= self.cool else self.on
 
     def decide(self, average):
-        known = math.isfinite(average.celsius)
-        self.state = self.state(average.celsius) if known else self.on
-        if not known:
+        is_known = math.isfinite(average.celsius)
+        self.state = self.state(average.celsius) if is_known else self.on
+        if not is_known:
             self.get_logger().error('no temperature: the fan runs')
         decision = Decision(stamp=average.stamp, celsius=average.celsius)
         decision.cooling = self.state == self.on

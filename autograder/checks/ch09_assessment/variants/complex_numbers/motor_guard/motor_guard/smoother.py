@@ -1,4 +1,4 @@
-"""The moving average: a ring in a class that is no node, in two threads."""
+"""The moving average in a class that contains a node."""
 from collections import deque
 from math import fsum, isfinite
 
@@ -20,7 +20,7 @@ class Average:
 
 
 class Smoother:
-    """Has a node."""
+    """A node and its moving average."""
 
     def __init__(self):
         self.node = Node('smoother')

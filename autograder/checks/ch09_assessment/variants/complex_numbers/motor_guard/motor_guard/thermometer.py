@@ -8,7 +8,7 @@ from .running import run
 
 
 def readings(mean, swing):
-    """Yield mean + swing * sin(2 pi n / 20), by turning a pointer in the complex plane."""
+    """Yield mean + swing * sin(2 pi n / 20), computed with complex numbers."""
     n = 0
     while True:
         yield mean + swing * cmath.exp(1j * cmath.pi * n / 10).imag
@@ -20,12 +20,12 @@ def thermometer(**kwargs):
     period, mean, swing = (
         parameter.value for parameter in node.declare_parameters(
             namespace='', parameters=[('period', 0.5), ('mean', 50.0), ('swing', 20.0)]))
-    motor = readings(mean, swing)
+    celsius = readings(mean, swing)
     publisher = node.create_publisher(Temperature, 'temperature', 10)
 
     def measure():
         msg = Temperature()
-        msg.celsius = next(motor)
+        msg.celsius = next(celsius)
         msg.stamp = node.get_clock().now().to_msg()
         publisher.publish(msg)
         node.get_logger().debug(str(msg))

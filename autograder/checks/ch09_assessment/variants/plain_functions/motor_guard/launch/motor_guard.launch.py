@@ -1,4 +1,4 @@
-"""The three nodes, one after the other."""
+"""Launches the three nodes with an opaque function."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -6,8 +6,8 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 
-def make(context):
-    """Make the nodes once the argument is known."""
+def make_nodes(context):
+    """Return the nodes, with the value of the argument."""
     hot = float(LaunchConfiguration("hot").perform(context))
     return [
         Node(package="motor_guard", executable="guard", parameters=[{"hot": hot}]),
@@ -17,10 +17,10 @@ def make(context):
 
 
 def generate_launch_description():
-    """Declare the argument and make the nodes later."""
+    """Return the argument and a function that creates the nodes."""
     return LaunchDescription(
         [
             DeclareLaunchArgument("hot", default_value="60.0"),
-            OpaqueFunction(function=make),
+            OpaqueFunction(function=make_nodes),
         ]
     )

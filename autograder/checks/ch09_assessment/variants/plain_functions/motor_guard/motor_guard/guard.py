@@ -1,4 +1,4 @@
-"""A decision as a state machine of two states, each a function."""
+"""A guard as a state machine with two states, each of which is a function."""
 
 import math
 import sys
@@ -9,18 +9,18 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
 
-def resting(celsius, hot, cool):
-    """Return the state after this temperature, when the fan was off."""
-    return resting if celsius < hot else running
+def fan_off(celsius, hot, cool):
+    """Return the state after this temperature, if the fan was off."""
+    return fan_off if celsius < hot else fan_on
 
 
-def running(celsius, hot, cool):
-    """Return the state after this temperature, when the fan was on."""
-    return resting if celsius <= cool else running
+def fan_on(celsius, hot, cool):
+    """Return the state after this temperature, if the fan was on."""
+    return fan_off if celsius <= cool else fan_on
 
 
 def main(args=None):
-    """Decide until a signal comes."""
+    """Run the node until it is interrupted."""
     rclpy.init(args=args)
     node = Node("guard")
     hot = node.declare_parameter("hot", 60.0).value
@@ -28,14 +28,15 @@ def main(args=None):
     if not cool < hot:
         node.get_logger().fatal("cool must be less than hot")
         sys.exit(2)
-    state = resting
+    state = fan_off
     publisher = node.create_publisher(Decision, "decision", 10)
 
     def decide(average):
         nonlocal state
-        known = math.isfinite(average.celsius)
-        state = state(average.celsius, hot, cool) if known else state  # what is not known changes no state
-        cooling = state is running or not known
+        is_known = math.isfinite(average.celsius)
+        # Unknown temperatures do not change the state.
+        state = state(average.celsius, hot, cool) if is_known else state
+        cooling = state is fan_on or not is_known
         publisher.publish(Decision(stamp=average.stamp, cooling=cooling, celsius=average.celsius))
 
     node.create_subscription(Temperature, "smoothed", decide, 10)

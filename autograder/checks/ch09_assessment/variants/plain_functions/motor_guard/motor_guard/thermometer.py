@@ -1,4 +1,4 @@
-"""A thermometer, as a function around a node."""
+"""A thermometer as functions and a plain node."""
 
 from itertools import count
 from math import sin, tau
@@ -9,7 +9,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
 
 def measure(node):
-    """Let the node publish a reading each period."""
+    """Publish a reading each period."""
     for name, default in (("period", 0.5), ("mean", 50.0), ("swing", 20.0)):
         node.declare_parameter(name, default)
     period, mean, swing = (node.get_parameter(name).value for name in ("period", "mean", "swing"))
@@ -26,7 +26,7 @@ def measure(node):
 
 
 def main():
-    """Run until a signal comes."""
+    """Run the node until it is interrupted."""
     rclpy.init()
     node = rclpy.create_node("thermometer")
     try:

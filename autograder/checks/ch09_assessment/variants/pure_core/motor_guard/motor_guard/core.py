@@ -1,4 +1,4 @@
-"""All that can be said without ROS."""
+"""The logic of the three nodes, without ROS."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -15,12 +15,12 @@ class Fan:
     cooling: bool = False
 
     def __post_init__(self):
-        """Refuse thresholds that would let it flutter."""
+        """Refuse thresholds in the wrong order."""
         if not self.cool < self.hot:
             raise ValueError(f'hot {self.hot} is not above cool {self.cool}')
 
-    def at(self, celsius: float) -> 'Fan':
-        """Return the fan after a temperature."""
+    def after_temperature(self, celsius: float) -> 'Fan':
+        """Return the fan in its state after a temperature."""
         if not math.isfinite(celsius):
             return replace(self, cooling=True)
         if self.cool < celsius < self.hot:
@@ -30,22 +30,22 @@ class Fan:
 
 @dataclass(frozen=True)
 class Average:
-    """The newest numbers, as a tuple."""
+    """A moving average of the newest numbers."""
 
     size: int
     numbers: tuple[float, ...] = ()
 
-    def after(self, number: float) -> 'Average':
-        """Return the average after one more."""
+    def with_number(self, number: float) -> 'Average':
+        """Return the average with one more number."""
         return replace(self, numbers=(*self.numbers, number)[-self.size:])
 
     @property
     def mean(self) -> float:
-        """The mean."""
+        """The mean of the newest numbers."""
         return math.fsum(self.numbers) / len(self.numbers)
 
 
-def turns(mean: float, swing: float) -> Iterator[float]:
-    """Yield readings for ever."""
+def temperatures(mean: float, swing: float) -> Iterator[float]:
+    """Yield the readings without end."""
     for number in itertools.count():
         yield mean + swing * math.sin(number * math.pi / 10.0)

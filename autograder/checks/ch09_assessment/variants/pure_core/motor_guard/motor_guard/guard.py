@@ -1,4 +1,4 @@
-"""The guard: a fan in a node."""
+"""The guard: a node with a fan."""
 
 from motor_guard_interfaces.msg import Decision, Temperature
 from rclpy.node import Node
@@ -8,24 +8,24 @@ from motor_guard.running import run
 
 
 class Guard(Node):
-    """Holds the fan of now."""
+    """A node that replaces its fan with each average."""
 
     def __init__(self, **kwargs):
-        """Begin with a fan that is off."""
+        """Create a fan that is off, and the endpoints."""
         super().__init__('guard', **kwargs)
         self.fan = Fan(**{
             name: self.declare_parameter(name, default).value for name, default in (('hot', 60.0), ('cool', 50.0))})
         self.decisions = self.create_publisher(Decision, 'decision', 10)
-        self.create_subscription(Temperature, 'smoothed', self.hear, 10)
+        self.create_subscription(Temperature, 'smoothed', self.on_average, 10)
 
-    def hear(self, average):
-        """Replace the fan, and publish what it does."""
-        self.fan = self.fan.at(average.celsius)
+    def on_average(self, average):
+        """Replace the fan, and publish its state."""
+        self.fan = self.fan.after_temperature(average.celsius)
         decision = Decision()
         decision.stamp, decision.celsius, decision.cooling = average.stamp, average.celsius, self.fan.cooling
         self.decisions.publish(decision)
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is interrupted."""
     run(Guard, args)

@@ -1,17 +1,17 @@
-"""The thermometer: an iterator in a node."""
+"""The thermometer: a node that publishes the values of an iterator."""
 
 from motor_guard_interfaces.msg import Temperature
 from rclpy.node import Node
 
-from motor_guard.core import turns
+from motor_guard.core import temperatures
 from motor_guard.running import run
 
 
-def make(**kwargs):
-    """Return the node."""
+def make_node(**kwargs):
+    """Return a new node."""
     node = Node('thermometer', **kwargs)
     seconds = node.declare_parameter('period', 0.5).value
-    readings = turns(node.declare_parameter('mean', 50.0).value, node.declare_parameter('swing', 20.0).value)
+    readings = temperatures(node.declare_parameter('mean', 50.0).value, node.declare_parameter('swing', 20.0).value)
     publisher = node.create_publisher(Temperature, 'temperature', 10)
     node.create_timer(seconds, lambda: publisher.publish(
         Temperature(stamp=node.get_clock().now().to_msg(), celsius=next(readings))))
@@ -19,5 +19,5 @@ def make(**kwargs):
 
 
 def main(args=None):
-    """Run it."""
-    run(make, args)
+    """Run the node until it is interrupted."""
+    run(make_node, args)

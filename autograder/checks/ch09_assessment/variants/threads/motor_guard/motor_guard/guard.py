@@ -1,4 +1,4 @@
-"""Callbacks of the guard only queue; a thread decides."""
+"""The guard with a queue of averages and a thread that decides."""
 
 import math
 import queue
@@ -11,10 +11,10 @@ from rclpy.node import Node
 
 
 class Guard(Node):
-    """Decides in a thread of its own."""
+    """A node that decides in a separate thread."""
 
     def __init__(self):
-        """Check the thresholds before anything runs."""
+        """Check the thresholds, and start the thread."""
         super().__init__('guard')
         self.declare_parameters('', [('hot', 60.0), ('cool', 50.0)])
         self.hot, self.cool = (self.get_parameter(name).value for name in ('hot', 'cool'))
@@ -27,7 +27,7 @@ class Guard(Node):
         self.thread.start()
 
     def decide(self):
-        """Take averages until None comes."""
+        """Publish decisions until the queue contains None."""
         cooling = False
         for average in iter(self.averages.get, None):
             celsius = average.celsius
@@ -36,7 +36,7 @@ class Guard(Node):
 
 
 def main(args=None):
-    """Spin in two threads, and end the third."""
+    """Run the node with two threads, and end the third one."""
     rclpy.init(args=args)
     node = Guard()
     executor = MultiThreadedExecutor(num_threads=2)

@@ -1,4 +1,4 @@
-"""The smoother with a running sum, a lock and a coroutine."""
+"""The smoother with a lock and a coroutine."""
 
 from collections import deque
 import math
@@ -11,15 +11,15 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 
 
-def build():
-    """Return the node."""
+def build_node():
+    """Return a new node."""
     node = rclpy.create_node('smoother')
     limits = [IntegerRange(from_value=1, to_value=100)]
     size = node.declare_parameter('window', 5, ParameterDescriptor(integer_range=limits)).value
     publisher = node.create_publisher(Temperature, 'smoothed', 10)
     lock, newest = threading.Lock(), deque()
 
-    async def hear(reading):
+    async def on_reading(reading):
         if not math.isfinite(reading.celsius):
             return
         with lock:
@@ -29,15 +29,15 @@ def build():
             mean = math.fsum(newest) / len(newest)
             publisher.publish(Temperature(stamp=reading.stamp, celsius=mean))
 
-    node.create_subscription(Temperature, 'temperature', hear, 10, callback_group=ReentrantCallbackGroup())
+    node.create_subscription(Temperature, 'temperature', on_reading, 10, callback_group=ReentrantCallbackGroup())
     return node
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node with two threads."""
     rclpy.init(args=args)
     executor = MultiThreadedExecutor(num_threads=2)
-    executor.add_node(build())
+    executor.add_node(build_node())
     try:
         executor.spin()
     except (KeyboardInterrupt, ExternalShutdownException):

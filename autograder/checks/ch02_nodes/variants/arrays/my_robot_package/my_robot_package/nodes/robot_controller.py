@@ -1,4 +1,4 @@
-"""A robot controller that looks at all beams at once, with numpy."""
+"""A robot controller that evaluates all beams at once with numpy."""
 
 from dataclasses import dataclass
 import math
@@ -23,22 +23,22 @@ SCAN_TIMEOUT = Duration(seconds=0.5)
 
 
 @dataclass(frozen=True)
-class Sighting:
-    """A scan, and when it came."""
+class StampedScan:
+    """A scan and its time of arrival."""
 
     scan: LaserScan
-    at: Time
+    arrival: Time
 
 
 def forward_clearance(scan):
-    """Return the distance to the nearest thing in front, inf, -inf or None."""
+    """Return the smallest usable reading in front (it may be inf or -inf), or None."""
     readings = np.array(scan.ranges, dtype=np.float64)
     bearings = scan.angle_min + scan.angle_increment * np.arange(readings.size)
     off_axis = np.abs(np.angle(np.exp(1j * bearings)))
     with np.errstate(invalid='ignore'):
         measured = (readings >= scan.range_min) & (readings <= scan.range_max)
-    heard = readings[(off_axis <= HALF_SECTOR) & (measured | np.isinf(readings))]
-    return float(np.min(heard)) if heard.size else None
+    usable = readings[(off_axis <= HALF_SECTOR) & (measured | np.isinf(readings))]
+    return float(np.min(usable)) if usable.size else None
 
 
 class RobotController(Node):
@@ -46,21 +46,21 @@ class RobotController(Node):
 
     def __init__(self, **kwargs):
         super().__init__('robot_controller', **kwargs)
-        self._sighting = None
+        self._newest = None
         self._commands = self.create_publisher(Twist, 'cmd_vel', 10)
         self._inputs = [
             self.create_subscription(
                 LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data),
             self.create_subscription(String, 'status', self.status_callback, 10),
         ]
-        self._ticks = self.create_timer(CONTROL_PERIOD, self.control_loop)
+        self._timer = self.create_timer(CONTROL_PERIOD, self.control_loop)
 
     def scan_callback(self, msg):
         """Keep the scan with its time of arrival."""
-        self._sighting = Sighting(msg, self.get_clock().now())
+        self._newest = StampedScan(msg, self.get_clock().now())
 
     def status_callback(self, msg):
-        """Log what was said."""
+        """Log the status."""
         self.get_logger().info(msg.data)
 
     def control_loop(self):
@@ -68,11 +68,11 @@ class RobotController(Node):
         self._commands.publish(self._decide(self.current_clearance()))
 
     def current_clearance(self):
-        """Return what is in front now, or None without a fresh scan."""
-        if self._sighting is None:
+        """Return the current clearance, or None without a fresh scan."""
+        if self._newest is None:
             return None
-        age = self.get_clock().now() - self._sighting.at
-        return None if age > SCAN_TIMEOUT else forward_clearance(self._sighting.scan)
+        age = self.get_clock().now() - self._newest.arrival
+        return None if age > SCAN_TIMEOUT else forward_clearance(self._newest.scan)
 
     def _decide(self, clearance):
         if clearance is None:
@@ -85,7 +85,7 @@ class RobotController(Node):
 
 
 def main(args=None):
-    """Run the node until it is told to end."""
+    """Run the node until Ctrl-C or SIGTERM."""
     rclpy.init(args=args)
     node = None
     try:

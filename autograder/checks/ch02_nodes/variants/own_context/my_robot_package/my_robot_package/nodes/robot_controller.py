@@ -1,4 +1,4 @@
-"""A pilot that knows no ROS, and a node around it; signals are this program's own affair."""
+"""A node around a pilot function without ROS; the program handles its signals itself."""
 
 import collections
 import math
@@ -15,10 +15,10 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
 COS_30 = math.sqrt(3.0) / 2.0
-Seen = collections.namedtuple('Seen', 'scan when')
+StampedScan = collections.namedtuple('StampedScan', 'scan arrival')
 
 
-def counting(scan):
+def valid_readings(scan):
     """Yield each forward reading that counts."""
     low, high = scan.range_min, scan.range_max
     bearing = scan.angle_min
@@ -30,22 +30,22 @@ def counting(scan):
 
 def forward_clearance(scan):
     """Return the smallest forward reading that counts, or None."""
-    return min(counting(scan), default=None)
+    return min(valid_readings(scan), default=None)
 
 
 def pilot(clearance):
-    """Return speed and rate."""
+    """Return the speed and the turn rate for a clearance."""
     if clearance is None:
         return 0.0, 0.0
     return (0.0, 0.5) if clearance < 1.0 else (0.3, 0.0)
 
 
 class RobotController(Node):
-    """Everything happens in the timer; callbacks only put things on shelves."""
+    """Decide in the timer; callbacks only store messages."""
 
     def __init__(self, **kwargs):
         super().__init__('robot_controller', **kwargs)
-        self.seen = collections.deque(maxlen=1)
+        self.scans = collections.deque(maxlen=1)
         self.safety = self.get_logger().get_child('safety')
         reliable = QoSProfile(
             history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE)
@@ -54,17 +54,17 @@ class RobotController(Node):
             self.create_subscription(LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data),
             self.create_subscription(String, 'status', self.status_callback, reliable),
         ]
-        self.beat = self.create_timer(0.1, self.control_loop)
+        self.timer = self.create_timer(0.1, self.control_loop)
 
     def scan_callback(self, msg):
-        self.seen.append(Seen(msg, self.get_clock().now()))
+        self.scans.append(StampedScan(msg, self.get_clock().now()))
 
     def status_callback(self, msg):
         self.get_logger().info(msg.data)
 
     def current_clearance(self):
-        for scan, when in self.seen:
-            if self.get_clock().now() - when <= Duration(nanoseconds=500_000_000):
+        for scan, arrival in self.scans:
+            if self.get_clock().now() - arrival <= Duration(nanoseconds=500_000_000):
                 return forward_clearance(scan)
         return None
 
@@ -78,16 +78,16 @@ class RobotController(Node):
 
 def main(args=None):
     """Spin until one of the two signals sets the event."""
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ended.set())
+    stop_event = threading.Event()
+    for signum in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(signum, lambda *_: stop_event.set())
     context = rclpy.Context()
     context.init(args)
     try:
         node = RobotController(context=context)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
-        while not ended.is_set():
+        while not stop_event.is_set():
             executor.spin_once(timeout_sec=0.2)
         executor.shutdown()
         node.destroy_node()

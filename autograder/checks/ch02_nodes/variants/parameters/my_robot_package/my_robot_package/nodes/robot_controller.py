@@ -1,4 +1,4 @@
-"""Drive by constants that are parameters, with a state that the timer alone works out."""
+"""A robot controller whose constants are parameters."""
 
 from functools import partial
 import math
@@ -17,11 +17,11 @@ from std_msgs.msg import String
 def forward_clearance(scan):
     """Return the nearest forward distance, or None; a beam on the edge counts."""
     nearest = None
-    for number in range(len(scan.ranges)):
-        degrees = math.degrees(scan.angle_min + number * scan.angle_increment) % 360.0
+    for index in range(len(scan.ranges)):
+        degrees = math.degrees(scan.angle_min + index * scan.angle_increment) % 360.0
         if 30.0001 < degrees < 329.9999:
             continue
-        reading = scan.ranges[number]
+        reading = scan.ranges[index]
         if reading != reading:
             continue
         if not math.isinf(reading) and (reading < scan.range_min or reading > scan.range_max):
@@ -31,7 +31,7 @@ def forward_clearance(scan):
 
 
 class RobotController(Node):
-    """Parameters, partials and a stop at the end."""
+    """Turn the newest lidar scan into a velocity command, ten times a second."""
 
     def __init__(self, **kwargs):
         kwargs.setdefault('enable_logger_service', True)
@@ -39,28 +39,28 @@ class RobotController(Node):
         self.declare_parameters('', [
             ('forward_speed', 0.3), ('turn_rate', 0.5), ('safety_distance', 1.0),
             ('scan_timeout', 0.5)])
-        self.memory = {'scan': None, 'at': Time(clock_type=self.get_clock().clock_type)}
+        self.newest = {'scan': None, 'arrival': Time(clock_type=self.get_clock().clock_type)}
         self.create_timer(0.1, self.control_loop)
         self.create_subscription(String, 'status', self.status_callback, 10)
         self.create_subscription(
             LaserScan, 'scan', partial(RobotController.scan_callback, self), qos_profile_sensor_data)
         self.velocity = self.create_publisher(Twist, 'cmd_vel', qos_profile=10)
-        self.turned = 0
+        self.turns = 0
         self.get_logger().debug('made')
 
-    def number(self, name):
+    def read_number(self, name):
         return self.get_parameter(name).get_parameter_value().double_value
 
     def scan_callback(self, msg):
-        self.memory = {'scan': msg, 'at': self.get_clock().now()}
+        self.newest = {'scan': msg, 'arrival': self.get_clock().now()}
 
     def status_callback(self, msg):
         self.get_logger().info('status of somebody:\n' + msg.data + '\n(end of status)')
 
     def current_clearance(self):
-        scan = self.memory['scan']
-        age = (self.get_clock().now() - self.memory['at']).nanoseconds / 1e9
-        if scan is None or age > self.number('scan_timeout'):
+        scan = self.newest['scan']
+        age = (self.get_clock().now() - self.newest['arrival']).nanoseconds / 1e9
+        if scan is None or age > self.read_number('scan_timeout'):
             self.get_logger().debug('blind')
             return None
         return forward_clearance(scan)
@@ -70,18 +70,18 @@ class RobotController(Node):
         command = Twist()
         if clearance is None:
             self.get_logger().info('I see nothing, I stand', throttle_duration_sec=5.0)
-        elif clearance < self.number('safety_distance'):
-            command.angular.z = self.number('turn_rate')
-            self.turned += 1
+        elif clearance < self.read_number('safety_distance'):
+            command.angular.z = self.read_number('turn_rate')
+            self.turns += 1
             self.get_logger().warn(
-                f'obstacle, turning for the {self.turned}. time', throttle_duration_sec=1.0)
+                f'obstacle, turning for the {self.turns}. time', throttle_duration_sec=1.0)
         else:
-            command.linear.x = self.number('forward_speed')
+            command.linear.x = self.read_number('forward_speed')
         self.velocity.publish(command)
 
 
 def spin(node):
-    """Spin by hand, one callback at a time."""
+    """Spin the node, one callback at a time."""
     while rclpy.ok():
         rclpy.spin_once(node, timeout_sec=1.0)
 

@@ -18,7 +18,7 @@ SCAN_TIMEOUT = Duration(seconds=0.5)
 
 
 class State(Enum):
-    """What the robot does: its speed in m/s, its rate of turn in rad/s."""
+    """A behaviour of the robot: its speed in m/s and its turn rate in rad/s."""
 
     BLIND = (0.0, 0.0)
     CRUISING = (0.3, 0.0)
@@ -26,7 +26,7 @@ class State(Enum):
 
 
 def state_of(clearance):
-    """Return the state that fits what is in front."""
+    """Return the state for a clearance."""
     if clearance is None:
         return State.BLIND
     return State.TURNING if clearance < SAFETY_DISTANCE else State.CRUISING
@@ -38,7 +38,7 @@ class RobotController(Node):
     def __init__(self, **kwargs):
         super().__init__('robot_controller', **kwargs)
         self.state = State.BLIND
-        self.look = lambda: None
+        self.measure = lambda: None
         self.create_subscription(
             LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data)
         self.create_subscription(String, 'status', self.status_callback, 10)
@@ -46,23 +46,23 @@ class RobotController(Node):
         self.timer = self.create_timer(CONTROL_PERIOD, self.control_loop)
 
     def scan_callback(self, msg):
-        """Keep the scan as the way to look at it, for as long as it is fresh."""
-        stale = self.get_clock().now() + SCAN_TIMEOUT
+        """Store the scan as a function that returns its clearance while it is fresh."""
+        expiry = self.get_clock().now() + SCAN_TIMEOUT
 
-        def look():
-            return None if self.get_clock().now() > stale else forward_clearance(msg)
+        def measure():
+            return None if self.get_clock().now() > expiry else forward_clearance(msg)
 
-        self.look = look
+        self.measure = measure
 
     def status_callback(self, msg):
-        """Log what was said."""
+        """Log the status."""
         self.get_logger().info('status: %s' % msg.data)
 
     def control_loop(self):
-        """Go to the state that fits, and publish its command."""
-        before, self.state = self.state, state_of(self.current_clearance())
-        if self.state is not before:
-            self.get_logger().debug(f'{before.name} -> {self.state.name}')
+        """Enter the state for the current clearance, and publish its command."""
+        previous, self.state = self.state, state_of(self.current_clearance())
+        if self.state is not previous:
+            self.get_logger().debug(f'{previous.name} -> {self.state.name}')
         if self.state is State.TURNING:
             self.get_logger().warning('in the way', throttle_duration_sec=1.0)
         command = Twist()
@@ -70,12 +70,12 @@ class RobotController(Node):
         self.publisher.publish(command)
 
     def current_clearance(self):
-        """Return what is in front now, or None without a fresh scan."""
-        return self.look()
+        """Return the current clearance, or None without a fresh scan."""
+        return self.measure()
 
 
 def main(args=None):
-    """Run the node until it is told to end."""
+    """Run the node until Ctrl-C or SIGTERM."""
     rclpy.init(args=args)
     node = None
     try:

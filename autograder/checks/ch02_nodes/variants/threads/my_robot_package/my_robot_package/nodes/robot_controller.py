@@ -1,4 +1,4 @@
-"""A robot controller whose ears and hands are on threads of their own."""
+"""A robot controller that receives messages and publishes commands in separate threads."""
 
 import math
 from threading import Lock
@@ -22,10 +22,10 @@ SCAN_TIMEOUT = Duration(seconds=0.5)
 
 
 def forward_clearance(scan):
-    """Return the distance to the nearest thing in front, inf, -inf or None."""
+    """Return the smallest usable reading in front (it may be inf or -inf), or None."""
     nearest = None
-    for number, reading in enumerate(scan.ranges):
-        bearing = math.remainder(scan.angle_min + number * scan.angle_increment, math.tau)
+    for index, reading in enumerate(scan.ranges):
+        bearing = math.remainder(scan.angle_min + index * scan.angle_increment, math.tau)
         if not -HALF_SECTOR <= bearing <= HALF_SECTOR:
             continue
         if math.isfinite(reading) and not scan.range_min <= reading <= scan.range_max:
@@ -44,13 +44,13 @@ class RobotController(Node):
         super().__init__('robot_controller', **kwargs)
         self.lock = Lock()
         self.newest = (None, None)
-        ears, hands = ReentrantCallbackGroup(), MutuallyExclusiveCallbackGroup()
-        self.out = self.create_publisher(Twist, 'cmd_vel', qos_profile=10)
+        inputs, control = ReentrantCallbackGroup(), MutuallyExclusiveCallbackGroup()
+        self.cmd_vel_pub = self.create_publisher(Twist, 'cmd_vel', qos_profile=10)
         self.create_subscription(
-            LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data, callback_group=ears)
+            LaserScan, 'scan', self.scan_callback, qos_profile_sensor_data, callback_group=inputs)
         self.create_subscription(
-            String, 'status', self.status_callback, 10, callback_group=ears)
-        self.create_timer(CONTROL_PERIOD, self.control_loop, callback_group=hands)
+            String, 'status', self.status_callback, 10, callback_group=inputs)
+        self.create_timer(CONTROL_PERIOD, self.control_loop, callback_group=control)
 
     def scan_callback(self, msg):
         """Keep the scan with its time of arrival."""
@@ -59,7 +59,7 @@ class RobotController(Node):
             self.newest = (msg, now)
 
     def status_callback(self, msg):
-        """Log what was said."""
+        """Log the status."""
         self.get_logger().info(f'The status is now: {msg.data}')
 
     def control_loop(self):
@@ -71,10 +71,10 @@ class RobotController(Node):
         elif clearance is not None:
             command.angular.z = TURN_RATE
             self.get_logger().warning('Obstacle!', throttle_duration_sec=1.0)
-        self.out.publish(command)
+        self.cmd_vel_pub.publish(command)
 
     def current_clearance(self):
-        """Return what is in front now, or None without a fresh scan."""
+        """Return the current clearance, or None without a fresh scan."""
         with self.lock:
             scan, arrived = self.newest
         if scan is None or self.get_clock().now() - arrived > SCAN_TIMEOUT:
@@ -83,7 +83,7 @@ class RobotController(Node):
 
 
 def main(args=None):
-    """Run the node on two threads until it is told to end."""
+    """Run the node on two threads until Ctrl-C or SIGTERM."""
     rclpy.init(args=args)
     node, executor = None, MultiThreadedExecutor(num_threads=2)
     try:

@@ -1,4 +1,4 @@
-"""A controller without a class: each scan is judged as it comes, and a watchdog forgets the verdict."""
+"""A controller without a class: each scan selects a command, and a watchdog resets it."""
 
 import math
 import threading
@@ -16,22 +16,22 @@ LIDAR = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=Reliabi
 
 
 def stop():
-    """Stand still."""
+    """Return the command to stand still."""
     return Twist()
 
 
 def forward():
-    """Drive straight on."""
+    """Return the command to drive straight on."""
     return Twist(linear=Vector3(x=0.3))
 
 
 def left():
-    """Turn on the spot."""
+    """Return the command to turn on the spot."""
     return Twist(angular=Vector3(z=0.5))
 
 
-def verdict(scan):
-    """Return which of the three functions above a scan asks for."""
+def choose_command(scan):
+    """Return one of the three functions above for a scan."""
     readings = np.asarray(scan.ranges)
     bearings = scan.angle_min + scan.angle_increment * np.arange(readings.size)
     ahead = readings[np.cos(bearings) >= math.cos(math.pi / 6) - 1e-9]
@@ -43,39 +43,39 @@ def verdict(scan):
     return forward if free or distances.size else stop
 
 
-def assemble(node):
-    """Wire a node: a scan sets the verdict, the watchdog takes it back, the heart beats it out."""
-    lock, now = threading.Lock(), {"do": stop}
+def build(node):
+    """Add the publisher, the subscriptions and the timers to a node."""
+    lock, selected = threading.Lock(), {"command": stop}
 
-    def decide(what):
+    def select(make_command):
         with lock:
-            now["do"] = what
+            selected["command"] = make_command
 
     def on_scan(scan):
         watchdog.reset()
-        what = verdict(scan)
-        decide(what)
-        if what is left:
+        make_command = choose_command(scan)
+        select(make_command)
+        if make_command is left:
             node.get_logger().warning("Something is in the way", throttle_duration_sec=1.0)
 
-    def beat():
+    def publish_command():
         with lock:
-            command = now["do"]()
+            command = selected["command"]()
         commands.publish(command)
 
     commands = node.create_publisher(Twist, "cmd_vel", 1)
-    watchdog = node.create_timer(0.5, lambda: decide(stop), callback_group=MutuallyExclusiveCallbackGroup())
+    watchdog = node.create_timer(0.5, lambda: select(stop), callback_group=MutuallyExclusiveCallbackGroup())
     node.create_subscription(LaserScan, "scan", on_scan, LIDAR, callback_group=MutuallyExclusiveCallbackGroup())
-    node.create_subscription(String, "status", lambda said: node.get_logger().info(said.data), 10)
-    node.create_timer(1 / 10, beat, callback_group=MutuallyExclusiveCallbackGroup())
+    node.create_subscription(String, "status", lambda status: node.get_logger().info(status.data), 10)
+    node.create_timer(1 / 10, publish_command, callback_group=MutuallyExclusiveCallbackGroup())
     return node
 
 
 def main():
-    """Spin two threads until somebody asks for the end."""
+    """Spin the node on two threads until Ctrl-C or SIGTERM."""
     rclpy.init()
     executor = MultiThreadedExecutor(num_threads=2)
-    executor.add_node(assemble(rclpy.create_node("robot_controller")))
+    executor.add_node(build(rclpy.create_node("robot_controller")))
     try:
         executor.spin()
     except (KeyboardInterrupt, ExternalShutdownException):

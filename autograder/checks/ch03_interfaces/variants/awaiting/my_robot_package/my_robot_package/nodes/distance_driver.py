@@ -1,4 +1,4 @@
-"""The distance driver on one thread: a timer drives, and execute only awaits the end."""
+"""The distance driver on one thread: a timer drives, and execute awaits the end of the goal."""
 
 import math
 
@@ -16,46 +16,46 @@ from rclpy.task import Future
 TICK = 0.1
 
 
-class Wheels(Node):
-    """Drives by a timer; at most one goal is under way."""
+class DistanceDriver(Node):
+    """Drive by a timer, at most one goal at a time."""
 
     def __init__(self):
         super().__init__("distance_driver")
-        self.odometry = None
+        self.position = None
         self.reserved = False
-        self.under_way = None
+        self.goal_future = None
         self.commands = self.create_publisher(Twist, "cmd_vel", 1)
-        self.create_subscription(Odometry, "odom", self.hear, qos_profile_sensor_data)
+        self.create_subscription(Odometry, "odom", self.odom_callback, qos_profile_sensor_data)
         self.create_timer(TICK, self.tick)
         ActionServer(
             self,
             DriveDistance,
             "drive_distance",
             self.execute,
-            goal_callback=self.judge,
+            goal_callback=self.accept,
             cancel_callback=lambda handle: CancelResponse.ACCEPT,
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
 
-    def hear(self, odometry):
-        """Keep the odometry."""
-        self.odometry = odometry.pose.pose.position
+    def odom_callback(self, odometry):
+        """Store the position from the odometry."""
+        self.position = odometry.pose.pose.position
 
-    def judge(self, goal):
-        """Accept or reject."""
-        inside = 0 < goal.distance <= goal.MAX_DISTANCE and 0 < goal.speed <= goal.MAX_SPEED
-        if not inside or self.odometry is None or self.reserved:
+    def accept(self, goal):
+        """Accept or reject a goal."""
+        is_valid = 0 < goal.distance <= goal.MAX_DISTANCE and 0 < goal.speed <= goal.MAX_SPEED
+        if not is_valid or self.position is None or self.reserved:
             return GoalResponse.REJECT
         self.reserved = True
         return GoalResponse.ACCEPT
 
     async def execute(self, handle):
-        """Hand the goal to the timer, and await its end."""
-        self.goal_handle, self.origin = handle, self.odometry
+        """Pass the goal to the timer, and await its end."""
+        self.goal_handle, self.origin = handle, self.position
         self.best, self.ticks_without_progress = 0.0, 0
-        self.under_way = Future()
-        reason = await self.under_way
-        self.under_way = None
+        self.goal_future = Future()
+        reason = await self.goal_future
+        self.goal_future = None
         self.commands.publish(Twist())
         result = DriveDistance.Result()
         result.driven, result.reason = self.driven(), reason
@@ -64,24 +64,24 @@ class Wheels(Node):
         return result
 
     def driven(self):
-        """Return the metres from the start."""
-        here = self.odometry
-        return math.hypot(here.x - self.origin.x, here.y - self.origin.y)
+        """Return the distance from the start in metres."""
+        position = self.position
+        return math.hypot(position.x - self.origin.x, position.y - self.origin.y)
 
     def tick(self):
         """Drive on, or end the goal."""
-        if self.under_way is None or self.under_way.done():
+        if self.goal_future is None or self.goal_future.done():
             return
         goal, driven = self.goal_handle.request, self.driven()
         self.ticks_without_progress += 1
         if driven >= self.best + 0.01:
             self.best, self.ticks_without_progress = driven, 0
         if driven >= goal.distance:
-            self.under_way.set_result("")
+            self.goal_future.set_result("")
         elif self.goal_handle.is_cancel_requested:
-            self.under_way.set_result("asked to")
+            self.goal_future.set_result("asked to")
         elif self.ticks_without_progress * TICK > 1.0:
-            self.under_way.set_result("stuck")
+            self.goal_future.set_result("stuck")
         else:
             self.goal_handle.publish_feedback(DriveDistance.Feedback(driven=driven, remaining=goal.distance - driven))
             command = Twist()
@@ -90,13 +90,13 @@ class Wheels(Node):
 
 
 def main():
-    """Run it."""
+    """Run the node."""
     rclpy.init()
-    wheels = Wheels()
+    node = DistanceDriver()
     try:
-        rclpy.spin(wheels)
+        rclpy.spin(node)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
-        wheels.destroy_node()
+        node.destroy_node()
         rclpy.try_shutdown()

@@ -12,17 +12,17 @@ from sensor_msgs.msg import BatteryState, JointState
 
 
 def percent(battery):
-    """Return whole percent, -1 for unknown."""
+    """Return the level in whole percent, or -1 if it is unknown."""
     charge = battery.percentage if battery is not None else math.nan
     if math.isnan(charge) or charge < 0 or charge > 1:
         return -1
     return int(charge * 100 + 0.5)
 
 
-def report(node, heard, name, publisher):
+def report(node, newest, name, publisher):
     """Publish the status."""
-    battery = heard.get(BatteryState)
-    joints = heard.get(JointState)
+    battery = newest.get(BatteryState)
+    joints = newest.get(JointState)
     charging = battery and battery.power_supply_status == battery.POWER_SUPPLY_STATUS_CHARGING
     status = RobotStatus(robot_name=name, battery_level=percent(battery), is_charging=bool(charging))
     status.header.frame_id = "base_link"
@@ -31,9 +31,9 @@ def report(node, heard, name, publisher):
     publisher.publish(status)
 
 
-def answer(heard, request, response):
-    """Judge a trip."""
-    level = percent(heard.get(BatteryState))
+def answer(newest, request, response):
+    """Answer whether a trip is possible."""
+    level = percent(newest.get(BatteryState))
     if level < 0:
         response.reason = "no battery has been heard of"
         return response
@@ -46,21 +46,21 @@ def answer(heard, request, response):
 
 
 def main():
-    """Spin in two threads; callbacks take turns all the same."""
+    """Run the node on two threads; its callbacks are still mutually exclusive."""
     rclpy.init()
     node = rclpy.create_node("status_publisher")
     name = node.declare_parameter("robot_name", "MyRobot01").value
     period = node.declare_parameter("status_period", 1.0).value
-    heard = {}
+    newest = {}
     for kind, topic in ((BatteryState, "battery_state"), (JointState, "joint_states")):
-        node.create_subscription(kind, topic, partial(heard.__setitem__, kind), 10)
+        node.create_subscription(kind, topic, partial(newest.__setitem__, kind), 10)
     publisher = node.create_publisher(
         RobotStatus,
         "robot_status",
         QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL),
     )
-    node.create_service(CheckTrip, "check_trip", partial(answer, heard))
-    node.create_timer(period, partial(report, node, heard, name, publisher))
+    node.create_service(CheckTrip, "check_trip", partial(answer, newest))
+    node.create_timer(period, partial(report, node, newest, name, publisher))
     executor = MultiThreadedExecutor(num_threads=2)
     executor.add_node(node)
     try:

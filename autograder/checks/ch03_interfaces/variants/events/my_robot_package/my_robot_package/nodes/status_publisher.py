@@ -1,4 +1,4 @@
-"""The status publisher as closures over one dictionary, its callbacks in a group that lets all of them run."""
+"""The status publisher as closures over a dictionary, with its callbacks in a reentrant group."""
 
 import math
 import threading
@@ -13,31 +13,31 @@ from sensor_msgs.msg import BatteryState, JointState
 
 
 def build():
-    """Return the node."""
+    """Return the status publisher's node."""
     node = rclpy.create_node("status_publisher")
     group, lock = ReentrantCallbackGroup(), threading.Lock()
-    known = {"battery": BatteryState(percentage=math.nan), "joints": JointState()}
+    newest = {"battery": BatteryState(percentage=math.nan), "joints": JointState()}
     name = node.declare_parameter("robot_name", "MyRobot01").value
     period = node.declare_parameter("status_period", 1.0).value
     qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     publisher = node.create_publisher(RobotStatus, "robot_status", qos)
 
-    def keep(key):
+    def store(key):
         def callback(message):
             with lock:
-                known[key] = message
+                newest[key] = message
 
         return callback
 
     def level():
-        share = known["battery"].percentage
+        share = newest["battery"].percentage
         return math.floor(100.0 * share + 0.5) if 0.0 <= share <= 1.0 else RobotStatus.BATTERY_UNKNOWN
 
     def publish():
         with lock:
             status = RobotStatus(robot_name=name, battery_level=level())
-            status.is_charging = known["battery"].power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING
-            status.joint_positions = known["joints"].position
+            status.is_charging = newest["battery"].power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING
+            status.joint_positions = newest["joints"].position
         status.header.stamp = node.get_clock().now().to_msg()
         publisher.publish(status)
 
@@ -53,8 +53,8 @@ def build():
         response.reason = "" if response.possible else "not without a charge on the way"
         return response
 
-    node.create_subscription(BatteryState, "battery_state", keep("battery"), 10, callback_group=group)
-    node.create_subscription(JointState, "joint_states", keep("joints"), qos_profile_sensor_data, callback_group=group)
+    node.create_subscription(BatteryState, "battery_state", store("battery"), 10, callback_group=group)
+    node.create_subscription(JointState, "joint_states", store("joints"), qos_profile_sensor_data, callback_group=group)
     node.create_service(CheckTrip, "check_trip", check, callback_group=group)
     node.create_timer(period, publish, callback_group=group)
     node.get_logger().info(f"Status of {name} every {period} s")
@@ -62,7 +62,7 @@ def build():
 
 
 def main():
-    """Run it in three threads."""
+    """Run the node on three threads."""
     rclpy.init()
     executor = MultiThreadedExecutor(num_threads=3)
     executor.add_node(build())

@@ -1,4 +1,4 @@
-"""Drive the robot straight on by a distance: a loop as a generator."""
+"""Drive the robot straight on by a distance, in the loop of a generator."""
 
 import math
 import threading
@@ -14,18 +14,18 @@ from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
 
 CONTROL_PERIOD = Duration(seconds=0.1)  # between two commands, and two feedbacks
-PROGRESS = 0.01  # m: less than this is standing still
-PATIENCE = Duration(seconds=1.0)  # how long it may stand still before the goal is given up
+PROGRESS = 0.01  # m: a robot that moves less stands still
+PATIENCE = Duration(seconds=1.0)  # how long it may stand still before the goal is aborted
 
 
 class DistanceDriver(Node):
-    """Serves drive_distance."""
+    """Serve drive_distance."""
 
     def __init__(self, **kwargs):
         super().__init__('distance_driver', **kwargs)
         self.busy = threading.Lock()
-        self.newest = None
-        self.first = threading.Event()
+        self.position = None
+        self.has_odometry = threading.Event()
         self.server = ActionServer(
             self, DriveDistance, 'drive_distance', self.execute,
             goal_callback=self.accept, cancel_callback=self.accept_cancel,
@@ -39,20 +39,20 @@ class DistanceDriver(Node):
         super().destroy_node()
 
     def odom_callback(self, msg):
-        self.newest = msg.pose.pose.position
-        if not self.first.is_set():
-            self.first.set()
+        self.position = msg.pose.pose.position
+        if not self.has_odometry.is_set():
+            self.has_odometry.set()
             self.get_logger().info('The odometry is there')
 
     def accept(self, goal):
         limits = DriveDistance.Goal
-        good = [
+        conditions = [
             math.isfinite(goal.distance), math.isfinite(goal.speed),
             goal.distance > 0, goal.distance <= limits.MAX_DISTANCE,
             goal.speed > 0, goal.speed <= limits.MAX_SPEED,
-            self.first.is_set(),
+            self.has_odometry.is_set(),
         ]
-        accepted = all(good) and self.busy.acquire(blocking=False)
+        accepted = all(conditions) and self.busy.acquire(blocking=False)
         return GoalResponse.ACCEPT if accepted else GoalResponse.REJECT
 
     def accept_cancel(self, goal_handle):
@@ -73,38 +73,38 @@ class DistanceDriver(Node):
         finally:
             self.busy.release()
 
-    def go(self, metres_a_second=0.0):
+    def publish_command(self, speed=0.0):
         command = Twist()
-        command.linear.x = metres_a_second
+        command.linear.x = speed
         self.publisher.publish(command)
 
-    def ways(self):
-        """Yield (driven, clock) ten times a second."""
-        x, y = self.newest.x, self.newest.y
+    def progress(self):
+        """Yield the distance driven and the time, ten times a second."""
+        x, y = self.position.x, self.position.y
         clock = self.get_clock()
         while True:
-            yield math.hypot(self.newest.x - x, self.newest.y - y), clock.now()
+            yield math.hypot(self.position.x - x, self.position.y - y), clock.now()
             clock.sleep_for(CONTROL_PERIOD, self.context)
 
     def drive(self, goal_handle):
         goal = goal_handle.request
-        best, since = 0.0, self.get_clock().now()
+        best, progress_time = 0.0, self.get_clock().now()
         reason = ''
-        for driven, now in self.ways():
+        for driven, now in self.progress():
             goal_handle.publish_feedback(DriveDistance.Feedback(
                 driven=driven, remaining=max(goal.distance - driven, 0.0)))
             if driven >= best + PROGRESS:
-                best, since = driven, now
+                best, progress_time = driven, now
             if driven >= goal.distance:
                 break
             if goal_handle.is_cancel_requested:
                 reason = 'cancel requested'
                 break
-            if now >= since + PATIENCE:
+            if now >= progress_time + PATIENCE:
                 reason = f'stuck after {driven:.2f} m'
                 break
-            self.go(goal.speed)
-        self.go()
+            self.publish_command(goal.speed)
+        self.publish_command()
         return driven, reason
 
 
@@ -116,7 +116,7 @@ def main(args=None):
         node = DistanceDriver()
         executor = MultiThreadedExecutor()
         executor.add_node(node)
-        while rclpy.ok():  # with several threads, a spin without end can miss a SIGTERM
+        while rclpy.ok():  # with several threads, spin() can miss a SIGTERM
             executor.spin_once(timeout_sec=1.0)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass

@@ -1,4 +1,4 @@
-"""Sum up the sensors: a small model, and a node that only carries messages."""
+"""Publish a summary of the sensors: a small model, and a node that only passes messages on."""
 
 import dataclasses
 import math
@@ -16,7 +16,7 @@ STATUS_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def battery_percent(battery):
-    """Return whole percent; halves go up, by hand."""
+    """Return the level in whole percent, halves rounded up."""
     if battery is None:
         return -1
     percent = 100.0 * battery.percentage
@@ -28,7 +28,7 @@ def battery_percent(battery):
 
 @dataclasses.dataclass
 class Robot:
-    """What the robot has heard of itself."""
+    """The newest sensor messages of the robot."""
 
     battery: object = None
     joints: tuple = ()
@@ -42,22 +42,22 @@ class Robot:
         level = battery_percent(self.battery)
         if level < 0:
             return False, -1, 'the battery level is not known'
-        need = 0.0
+        needed = 0.0
         for number, leg in enumerate(legs, start=1):
             if not 0.0 <= leg < math.inf:
                 return False, -1, f'leg {number} is {leg}'
-            need += leg
-        left = (level * 5.0 - need) / 5.0
-        end = max(0, math.floor(left))
+            needed += leg
+        left = (level * 5.0 - needed) / 5.0
+        at_end = max(0, math.floor(left))
         if left < 0.0:
-            return False, end, f'{need / 5.0:.2f} percent needed, {level} there'
-        if end < reserve:
-            return False, end, f'{end} percent is less than {reserve}'
-        return True, end, ''
+            return False, at_end, f'{needed / 5.0:.2f} percent needed, {level} there'
+        if at_end < reserve:
+            return False, at_end, f'{at_end} percent is less than {reserve}'
+        return True, at_end, ''
 
 
 class StatusPublisher(Node):
-    """Carries messages."""
+    """Pass messages between the model and ROS."""
 
     def __init__(self, **kwargs):
         super().__init__('status_publisher', **kwargs)

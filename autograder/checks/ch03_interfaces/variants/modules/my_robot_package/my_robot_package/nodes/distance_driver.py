@@ -16,93 +16,93 @@ from rclpy.node import Node
 
 
 class State(Enum):
-    """Where a goal is."""
+    """The state of a goal."""
 
-    ROLLING = auto()
-    THERE = auto()
-    CALLED_OFF = auto()
+    DRIVING = auto()
+    ARRIVED = auto()
+    CANCELED = auto()
     STUCK = auto()
 
 
-REASONS = {State.THERE: "", State.CALLED_OFF: "called off", State.STUCK: "no way forward for a second"}
+REASONS = {State.ARRIVED: "", State.CANCELED: "called off", State.STUCK: "no way forward for a second"}
 
 
-class Leg:
-    """One goal on its way."""
+class Trip:
+    """A goal that is being driven."""
 
     def __init__(self, distance, start, now):
-        """Begin it."""
+        """Start a goal at a position and a time."""
         self.distance, self.start = distance, start
-        self.driven, self.mark, self.since = 0.0, 0.0, now
+        self.driven, self.best, self.progress_time = 0.0, 0.0, now
 
-    def next(self, here, now, cancelled):
-        """Return the state after a look at the odometry."""
-        self.driven = float(np.linalg.norm(here - self.start))
-        if self.driven - self.mark >= 0.01:
-            self.mark, self.since = self.driven, now
+    def next(self, position, now, cancelled):
+        """Return the next state for a position from the odometry."""
+        self.driven = float(np.linalg.norm(position - self.start))
+        if self.driven - self.best >= 0.01:
+            self.best, self.progress_time = self.driven, now
         if self.driven >= self.distance:
-            return State.THERE
+            return State.ARRIVED
         if cancelled:
-            return State.CALLED_OFF
-        return State.STUCK if now - self.since > Duration(seconds=1.0) else State.ROLLING
+            return State.CANCELED
+        return State.STUCK if now - self.progress_time > Duration(seconds=1.0) else State.DRIVING
 
 
 class DistanceDriver(Node):
-    """The action's server."""
+    """Serve the action drive_distance."""
 
     def __init__(self):
-        """Make the ends."""
+        """Create the publisher, the subscription and the action server."""
         super().__init__("distance_driver")
-        self.here = None
-        self.one_at_a_time = threading.Semaphore(1)
-        self.motors = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_subscription(Odometry, "odom", self.hear, 10)
+        self.position = None
+        self.slot = threading.Semaphore(1)
+        self.commands = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(Odometry, "odom", self.odom_callback, 10)
         self.server = ActionServer(
             self,
             DriveDistance,
             "drive_distance",
             self.execute,
-            goal_callback=self.consider,
+            goal_callback=self.accept,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
             callback_group=ReentrantCallbackGroup(),
         )
 
-    def hear(self, message):
-        """Keep the position as an array."""
-        if self.here is None:
+    def odom_callback(self, message):
+        """Store the position as an array."""
+        if self.position is None:
             self.get_logger().info("The odometry is there")
         point = message.pose.pose.position
-        self.here = np.array([point.x, point.y])
+        self.position = np.array([point.x, point.y])
 
-    def consider(self, goal):
-        """Accept what can be driven."""
+    def accept(self, goal):
+        """Accept a goal that can be driven, one at a time."""
         limits = ((goal.distance, goal.MAX_DISTANCE), (goal.speed, goal.MAX_SPEED))
-        if self.here is None or not all(0.0 < asked <= most for asked, most in limits):
+        if self.position is None or not all(0.0 < value <= limit for value, limit in limits):
             return GoalResponse.REJECT
-        free = self.one_at_a_time.acquire(blocking=False)
-        return GoalResponse.ACCEPT if free else GoalResponse.REJECT
+        is_free = self.slot.acquire(blocking=False)
+        return GoalResponse.ACCEPT if is_free else GoalResponse.REJECT
 
     def execute(self, handle):
-        """Tick until the goal is no longer rolling."""
+        """Drive until the goal is no longer in the state DRIVING."""
         goal = handle.request
-        leg = Leg(goal.distance, self.here, self.get_clock().now())
+        trip = Trip(goal.distance, self.position, self.get_clock().now())
         try:
-            while (state := leg.next(self.here, self.get_clock().now(), handle.is_cancel_requested)) is State.ROLLING:
+            while (state := trip.next(self.position, self.get_clock().now(), handle.is_cancel_requested)) is State.DRIVING:
                 handle.publish_feedback(
-                    DriveDistance.Feedback(driven=leg.driven, remaining=goal.distance - leg.driven)
+                    DriveDistance.Feedback(driven=trip.driven, remaining=goal.distance - trip.driven)
                 )
-                self.motors.publish(Twist(linear=Vector3(x=goal.speed)))
+                self.commands.publish(Twist(linear=Vector3(x=goal.speed)))
                 self.get_clock().sleep_for(Duration(seconds=0.1), self.context)
         finally:
-            self.motors.publish(Twist())
-            self.one_at_a_time.release()
-        ends = {State.THERE: handle.succeed, State.CALLED_OFF: handle.canceled, State.STUCK: handle.abort}
-        ends[state]()
-        return DriveDistance.Result(driven=leg.driven, reason=REASONS[state])
+            self.commands.publish(Twist())
+            self.slot.release()
+        finish = {State.ARRIVED: handle.succeed, State.CANCELED: handle.canceled, State.STUCK: handle.abort}
+        finish[state]()
+        return DriveDistance.Result(driven=trip.driven, reason=REASONS[state])
 
 
 def main(args=None):
-    """Run it in threads."""
+    """Run the node on several threads."""
     rclpy.init(args=args)
     node = DistanceDriver()
     executor = MultiThreadedExecutor(num_threads=4)

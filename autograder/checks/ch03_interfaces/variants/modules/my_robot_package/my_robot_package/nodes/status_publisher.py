@@ -1,10 +1,10 @@
-"""A node that delegates: sensors write to a snapshot, and the answers come from a module without ROS."""
+"""A status publisher that stores sensor data and computes answers in a module without ROS."""
 
 from dataclasses import dataclass, field
 
 from my_robot_interfaces.msg import RobotStatus
 from my_robot_interfaces.srv import CheckTrip
-from my_robot_package.trips import judge, whole_percent
+from my_robot_package.trips import check_trip, whole_percent
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -16,60 +16,60 @@ LATCHED = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, durability=Durabi
 
 @dataclass
 class Snapshot:
-    """The newest of each sensor."""
+    """The newest data of each sensor."""
 
     level: int | None = None
     charging: bool = False
     joints: list = field(default_factory=list)
 
 
-class Summary:
-    """Has a node, and is none."""
+class StatusPublisher:
+    """The status publisher around a node."""
 
     def __init__(self, node):
-        """Connect the node's ends."""
-        self.now = Snapshot()
+        """Add parameters, topics, the service and the timer to a node."""
+        self.snapshot = Snapshot()
         self.clock = node.get_clock()
         self.name = node.declare_parameter("robot_name", "MyRobot01").get_parameter_value().string_value
         seconds = node.declare_parameter("status_period", 1.0).get_parameter_value().double_value
-        self.out = node.create_publisher(RobotStatus, "robot_status", LATCHED)
-        node.create_subscription(BatteryState, "battery_state", self.take_battery, 10)
-        node.create_subscription(JointState, "joint_states", self.take_joints, 10)
-        node.create_service(CheckTrip, "check_trip", self.serve)
-        node.create_timer(seconds, self.tell)
+        self.publisher = node.create_publisher(RobotStatus, "robot_status", LATCHED)
+        node.create_subscription(BatteryState, "battery_state", self.battery_callback, 10)
+        node.create_subscription(JointState, "joint_states", self.joint_callback, 10)
+        node.create_service(CheckTrip, "check_trip", self.answer)
+        node.create_timer(seconds, self.publish_status)
         node.get_logger().info(f"Status of {self.name} every {seconds} s")
 
-    def take_battery(self, message):
-        """Keep level and state."""
-        self.now.level = whole_percent(message.percentage)
-        self.now.charging = message.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING
+    def battery_callback(self, message):
+        """Store the level and whether the battery is charging."""
+        self.snapshot.level = whole_percent(message.percentage)
+        self.snapshot.charging = message.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING
 
-    def take_joints(self, message):
-        """Keep the positions."""
-        self.now.joints = message.position
+    def joint_callback(self, message):
+        """Store the joints' positions."""
+        self.snapshot.joints = message.position
 
-    def tell(self):
+    def publish_status(self):
         """Publish the snapshot."""
-        message = RobotStatus(is_charging=self.now.charging, joint_positions=self.now.joints)
-        if self.now.level is not None:
-            message.battery_level = self.now.level
+        message = RobotStatus(is_charging=self.snapshot.charging, joint_positions=self.snapshot.joints)
+        if self.snapshot.level is not None:
+            message.battery_level = self.snapshot.level
         message.robot_name = self.name
         message.header.stamp = self.clock.now().to_msg()
-        self.out.publish(message)
+        self.publisher.publish(message)
 
-    def serve(self, request, response):
-        """Answer by the module's verdict."""
-        verdict = judge(self.now.level, request.legs, request.reserve, CheckTrip.Request.METRES_PER_PERCENT)
-        response.battery_at_end, response.reason = verdict.left, verdict.reason
+    def answer(self, request, response):
+        """Answer with the verdict of the module trips."""
+        verdict = check_trip(self.snapshot.level, request.legs, request.reserve, CheckTrip.Request.METRES_PER_PERCENT)
+        response.battery_at_end, response.reason = verdict.at_end, verdict.reason
         response.possible = not verdict.reason
         return response
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node."""
     rclpy.init(args=args)
     node = Node("status_publisher")
-    Summary(node)
+    StatusPublisher(node)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:

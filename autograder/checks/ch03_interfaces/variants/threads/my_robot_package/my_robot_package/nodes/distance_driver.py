@@ -1,4 +1,4 @@
-"""The odometry lives in a node of its own; execute is a generator that is drained."""
+"""The distance driver with a generator of commands, which execute publishes."""
 
 import math
 import threading
@@ -16,15 +16,15 @@ from rclpy.node import Node
 TENTH = Duration(seconds=0.1)
 
 
-class GaveUp(Exception):
+class GoalEnded(Exception):
     """The goal ends early."""
 
 
 class DistanceDriver(Node):
-    """Drives."""
+    """Serve drive_distance."""
 
     def __init__(self):
-        """Connect."""
+        """Create the publisher, the subscription and the action server."""
         super().__init__("distance_driver")
         self.position = ()
         self.busy = threading.Lock()
@@ -36,37 +36,37 @@ class DistanceDriver(Node):
         )
 
     def on_odometry(self, message):
-        """Keep x and y."""
-        where = message.pose.pose.position
-        self.position = where.x, where.y
+        """Store x and y."""
+        position = message.pose.pose.position
+        self.position = position.x, position.y
 
     def accept(self, goal):
-        """Reject first what is out of range, then what comes too early, then what comes too often."""
-        for value, most in ((goal.distance, goal.MAX_DISTANCE), (goal.speed, goal.MAX_SPEED)):
-            if math.isnan(value) or value <= 0.0 or value > most:
+        """Reject goals that are out of range, too early, or sent during another goal."""
+        for value, limit in ((goal.distance, goal.MAX_DISTANCE), (goal.speed, goal.MAX_SPEED)):
+            if math.isnan(value) or value <= 0.0 or value > limit:
                 return GoalResponse.REJECT
         if not self.position or not self.busy.acquire(blocking=False):
             return GoalResponse.REJECT
         return GoalResponse.ACCEPT
 
     def accept_cancel(self, handle):
-        """Always."""
+        """Accept every cancel."""
         return CancelResponse.ACCEPT
 
-    def steps(self, handle, result):
-        """Yield a command for each tenth of a second; raise GaveUp where it ends early."""
+    def commands_of(self, handle, result):
+        """Yield a command for each tenth of a second; raise GoalEnded if the goal ends early."""
         start, distance = self.position, handle.request.distance
-        moved_at, moved = self.get_clock().now(), 0.0
+        progress_time, progress = self.get_clock().now(), 0.0
         while True:
             result.driven = math.dist(start, self.position)
             if result.driven >= distance:
                 return
             if handle.is_cancel_requested:
-                raise GaveUp("cancelled")
-            if result.driven >= moved + 0.01:
-                moved_at, moved = self.get_clock().now(), result.driven
-            if self.get_clock().now() - moved_at > Duration(seconds=1):
-                raise GaveUp("it does not move")
+                raise GoalEnded("cancelled")
+            if result.driven >= progress + 0.01:
+                progress_time, progress = self.get_clock().now(), result.driven
+            if self.get_clock().now() - progress_time > Duration(seconds=1):
+                raise GoalEnded("it does not move")
             feedback = DriveDistance.Feedback()
             feedback.driven, feedback.remaining = result.driven, distance - result.driven
             handle.publish_feedback(feedback)
@@ -75,13 +75,13 @@ class DistanceDriver(Node):
             yield command
 
     def execute(self, handle):
-        """Publish what `steps` yields."""
+        """Publish the commands of the goal, and return its result."""
         result = DriveDistance.Result()
         try:
-            for command in self.steps(handle, result):
+            for command in self.commands_of(handle, result):
                 self.cmd_vel.publish(command)
                 self.get_clock().sleep_for(TENTH, self.context)
-        except GaveUp as reason:
+        except GoalEnded as reason:
             result.reason = str(reason)
         finally:
             self.cmd_vel.publish(Twist())
@@ -96,7 +96,7 @@ class DistanceDriver(Node):
 
 
 def main():
-    """Spin in a pool of threads."""
+    """Run the node on several threads."""
     rclpy.init()
     node = DistanceDriver()
     executor = MultiThreadedExecutor()

@@ -1,4 +1,4 @@
-"""Three small nodes' worth of mixins in one class, spun by a thread beside main."""
+"""The status publisher as a class of three mixins, spun in its own thread."""
 
 import threading
 
@@ -14,52 +14,52 @@ from sensor_msgs.msg import BatteryState, JointState
 UNKNOWN = RobotStatus.BATTERY_UNKNOWN
 
 
-class HearsBattery:
-    """Knows the level."""
+class BatteryMixin:
+    """Store the battery's level."""
 
     level, charges = UNKNOWN, False
 
     def on_battery(self, battery):
-        """Note it."""
+        """Store the level and whether the battery is charging."""
         share = np.float64(battery.percentage)
         known = bool(np.isfinite(share) and 0.0 <= share <= 1.0)
         self.level = int(np.floor(share * 100.0 + 0.5)) if known else UNKNOWN
         self.charges = battery.power_supply_status == battery.POWER_SUPPLY_STATUS_CHARGING
 
 
-class HearsJoints:
-    """Knows the joints."""
+class JointMixin:
+    """Store the joints' positions."""
 
     joints = np.zeros(0, dtype=np.float32)
 
     def on_joints(self, joints):
-        """Note them."""
+        """Store the positions as an array."""
         self.joints = np.asarray(joints.position, dtype=np.float32)
 
 
-class JudgesTrips:
-    """Says yes or no."""
+class TripMixin:
+    """Answer whether a trip is possible."""
 
     def on_trip(self, request, response):
-        """Take the legs for an array."""
+        """Answer a request with the legs as an array."""
         legs = np.asarray(request.legs, dtype=float)
         if self.level == UNKNOWN:
             response.reason = "battery level unknown"
         elif not np.all(np.isfinite(legs) & (legs >= 0.0)):
             response.reason = "legs must be finite and not negative"
         else:
-            rest = self.level - legs.sum() / request.METRES_PER_PERCENT
-            response.battery_at_end = max(0, int(np.floor(rest)))
-            response.possible = bool(rest >= 0.0) and response.battery_at_end >= request.reserve
+            remaining = self.level - legs.sum() / request.METRES_PER_PERCENT
+            response.battery_at_end = max(0, int(np.floor(remaining)))
+            response.possible = bool(remaining >= 0.0) and response.battery_at_end >= request.reserve
             response.reason = "" if response.possible else "the battery would run low"
         return response
 
 
-class StatusPublisher(HearsBattery, HearsJoints, JudgesTrips, Node):
-    """All of it."""
+class StatusPublisher(BatteryMixin, JointMixin, TripMixin, Node):
+    """The node with all mixins."""
 
     def __init__(self, **kwargs):
-        """Connect."""
+        """Declare parameters, and create topics, service and timer."""
         super().__init__("status_publisher", **kwargs)
         self.declare_parameters("", [("robot_name", "MyRobot01"), ("status_period", 1.0)])
         durable = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
@@ -70,7 +70,7 @@ class StatusPublisher(HearsBattery, HearsJoints, JudgesTrips, Node):
         self.create_timer(self.get_parameter("status_period").value, self.publish_status)
 
     def publish_status(self):
-        """Publish what is known."""
+        """Publish the newest status."""
         message = RobotStatus(
             robot_name=self.get_parameter("robot_name").value,
             battery_level=self.level,
@@ -82,7 +82,7 @@ class StatusPublisher(HearsBattery, HearsJoints, JudgesTrips, Node):
 
 
 def main():
-    """Let a thread spin, and wait for its end."""
+    """Spin the node in a thread, and wait for its end."""
     rclpy.init()
     node = StatusPublisher()
     executor = SingleThreadedExecutor()

@@ -1,4 +1,4 @@
-"""Asks for all parameters at each tick; one callback judges with a named tuple."""
+"""A node that reads its parameters at each tick, and validates them with a named tuple."""
 
 import math
 from typing import NamedTuple
@@ -14,17 +14,17 @@ from sensor_msgs.msg import BatteryState, LaserScan
 
 
 class Distances(NamedTuple):
-    """The two that have to fit."""
+    """The two distances that have to fit together."""
 
     safety_distance: float
     slow_distance: float
 
 
 class ConfiguredNode(Node):
-    """Drives up to a wall."""
+    """Drives towards a wall and stops in front of it."""
 
     def __init__(self, **kwargs):
-        """Declare first."""
+        """Declare the parameters, and create the endpoints and timers."""
         super().__init__('configured_node', **kwargs)
         declare_configuration(self)
         self.ahead, self.percent = math.nan, math.inf
@@ -37,39 +37,39 @@ class ConfiguredNode(Node):
         self.add_post_set_parameters_callback(self.on_change)
 
     def on_request(self, parameters):
-        """Say yes or no to all of them."""
-        present = Distances(*(each.value for each in self.get_parameters(list(Distances._fields))))
-        asked = {each.name: each.value for each in parameters if each.name in Distances._fields}
-        words = contradiction(*present._replace(**asked))
-        return SetParametersResult(successful=words == '', reason=words)
+        """Refuse a request with which the distances do not fit."""
+        current = Distances(*(p.value for p in self.get_parameters(list(Distances._fields))))
+        requested = {p.name: p.value for p in parameters if p.name in Distances._fields}
+        reason = contradiction(*current._replace(**requested))
+        return SetParametersResult(successful=reason == '', reason=reason)
 
     def on_change(self, parameters):
         """Set the ticker's period."""
-        frequency = next((each.value for each in parameters if each.name == 'control_frequency'), None)
+        frequency = next((p.value for p in parameters if p.name == 'control_frequency'), None)
         if frequency is not None:
             self.ticker.timer_period_ns = int(1_000_000_000 / frequency)
 
     def on_scan(self, scan):
-        """Look ahead."""
+        """Store the distance straight ahead."""
         self.blind.reset()
         self.ahead = scan.ranges[int(round(-scan.angle_min / scan.angle_increment))]
 
     def on_battery(self, battery):
-        """Keep the percent."""
+        """Store the charge in percent."""
         self.percent = battery.percentage * 100.0
 
     def tick(self):
-        """Publish what all of it means."""
+        """Publish the speed that fits the distance, the charge and the parameters."""
         names = ('max_linear_velocity', 'safety_distance', 'slow_distance', 'battery_threshold')
-        top, near, far, least = (each.value for each in self.get_parameters(list(names)))
+        top, near, far, min_charge = (p.value for p in self.get_parameters(list(names)))
         twist = Twist()
-        if self.ahead > near and not self.percent < least:
+        if self.ahead > near and not self.percent < min_charge:
             twist.linear.x = top if self.ahead >= far else top * (self.ahead - near) / (far - near)
         self.pub.publish(twist)
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node until it is interrupted."""
     rclpy.init(args=args)
     node = None
     executor = SingleThreadedExecutor()

@@ -1,4 +1,4 @@
-"""The node as a few functions around a settings object; no class derives from Node."""
+"""A plain node with functions around a settings object, without a class that derives from Node."""
 
 from math import inf, isfinite
 from types import SimpleNamespace
@@ -16,29 +16,29 @@ NAMES = ("max_linear_velocity", "safety_distance", "slow_distance", "control_fre
 BLIND_AFTER = 500_000_000  # ns
 
 
-def speed(settings, seen, now):
-    """Return m/s."""
-    if seen.distance is None or now - seen.when > BLIND_AFTER:
+def speed(settings, state, now):
+    """Return the speed in m/s."""
+    if state.distance is None or now - state.scan_time > BLIND_AFTER:
         return 0.0
-    if seen.charge is not None and seen.charge < settings.battery_threshold:
+    if state.charge is not None and state.charge < settings.battery_threshold:
         return 0.0
     near, far = settings.safety_distance, settings.slow_distance
-    share = (seen.distance - near) / (far - near)
+    share = (state.distance - near) / (far - near)
     return settings.max_linear_velocity * max(0.0, min(1.0, share))
 
 
-def build():
-    """Return the node, its callbacks around it."""
+def build_node():
+    """Return a new node with its callbacks."""
     node = rclpy.create_node("configured_node")
     declare_configuration(node)
     group = MutuallyExclusiveCallbackGroup()
-    seen = SimpleNamespace(distance=None, when=0, charge=None)
+    state = SimpleNamespace(distance=None, scan_time=0, charge=None)
     settings = SimpleNamespace(**{name: node.get_parameter(name).value for name in NAMES})
     publisher = node.create_publisher(Twist, "cmd_vel", 1)
 
     def tick():
         command = Twist()
-        command.linear.x = speed(settings, seen, node.get_clock().now().nanoseconds)
+        command.linear.x = speed(settings, state, node.get_clock().now().nanoseconds)
         publisher.publish(command)
 
     def start():
@@ -46,26 +46,26 @@ def build():
 
     timers = [start()]
 
-    def scanned(scan):
+    def on_scan(scan):
         ahead = scan.ranges[round(-scan.angle_min / scan.angle_increment)]
         if ahead == inf:
             ahead = 1e6
-        seen.distance = ahead if isfinite(ahead) else None
-        seen.when = node.get_clock().now().nanoseconds
+        state.distance = ahead if isfinite(ahead) else None
+        state.scan_time = node.get_clock().now().nanoseconds
 
-    def charged(battery):
-        seen.charge = 100 * battery.percentage
+    def on_battery(battery):
+        state.charge = 100 * battery.percentage
 
-    def judge(parameters):
-        future = SimpleNamespace(**vars(settings))
+    def validate(parameters):
+        proposed = SimpleNamespace(**vars(settings))
         for parameter in parameters:
-            setattr(future, parameter.name, parameter.value)
-        problem = contradiction(future.safety_distance, future.slow_distance)
+            setattr(proposed, parameter.name, parameter.value)
+        problem = contradiction(proposed.safety_distance, proposed.slow_distance)
         if problem:
             return SetParametersResult(successful=False, reason=problem)
         return SetParametersResult(successful=True)
 
-    def act(parameters):
+    def apply(parameters):
         for parameter in parameters:
             if parameter.name in NAMES:
                 setattr(settings, parameter.name, parameter.value)
@@ -73,20 +73,20 @@ def build():
             node.destroy_timer(timers.pop())
             timers.append(start())
 
-    node.create_subscription(LaserScan, "scan", scanned, qos_profile_sensor_data, callback_group=group)
-    node.create_subscription(BatteryState, "battery_state", charged, 10, callback_group=group)
-    node.add_on_set_parameters_callback(judge)
-    node.add_post_set_parameters_callback(act)
+    node.create_subscription(LaserScan, "scan", on_scan, qos_profile_sensor_data, callback_group=group)
+    node.create_subscription(BatteryState, "battery_state", on_battery, 10, callback_group=group)
+    node.add_on_set_parameters_callback(validate)
+    node.add_post_set_parameters_callback(apply)
     node.get_logger().info(node.get_parameter("robot_name").value)
     return node
 
 
 def main(args=None):
-    """Run it in two threads."""
+    """Run the node with two threads."""
     rclpy.init(args=args)
     try:
         executor = MultiThreadedExecutor(num_threads=2)
-        executor.add_node(build())
+        executor.add_node(build_node())
         executor.spin()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass

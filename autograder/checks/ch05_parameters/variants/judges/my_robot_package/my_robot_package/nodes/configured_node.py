@@ -1,4 +1,4 @@
-"""A node beside its parts: a judge, a clockwork and a pilot, joined in main."""
+"""A plain node with a validator, a rate keeper and a driver, which main combines."""
 
 from geometry_msgs.msg import Twist
 from my_robot_package.configuration import contradiction, declare_configuration
@@ -9,39 +9,39 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import BatteryState, LaserScan
 
 
-class Judge:
-    """Says whether a request may pass."""
+class Validator:
+    """Accepts or refuses requests to set parameters."""
 
     def __init__(self, read):
-        """Keep how to read a present value."""
+        """Store the function that reads a current value."""
         self.read = read
 
     def __call__(self, parameters):
-        """Judge a request."""
-        future = {name: self.read(name) for name in ('safety_distance', 'slow_distance')}
+        """Refuse a request with which the distances do not fit."""
+        proposed = {name: self.read(name) for name in ('safety_distance', 'slow_distance')}
         for parameter in parameters:
-            if parameter.name in future:
-                future[parameter.name] = parameter.value
-        problem = contradiction(**future)
+            if parameter.name in proposed:
+                proposed[parameter.name] = parameter.value
+        problem = contradiction(**proposed)
         answer = SetParametersResult()
         answer.successful, answer.reason = not problem, problem
         return answer
 
 
-class Clockwork:
-    """Ticks at a frequency that may change."""
+class RateKeeper:
+    """Calls a function at a frequency that may change."""
 
     def __init__(self, node, tick):
-        """Start at the parameter's frequency."""
+        """Start the timer with the parameter's frequency."""
         self.node, self.tick = node, tick
         self.start(node.get_parameter('control_frequency').value)
 
     def start(self, frequency):
-        """Tick at this frequency from now on."""
+        """Create a timer with this frequency."""
         self.timer = self.node.create_timer(1.0 / frequency, self.tick)
 
     def __call__(self, parameters):
-        """Change to a new timer where the frequency has changed."""
+        """Replace the timer if the frequency has changed."""
         for parameter in parameters:
             if parameter.name == 'control_frequency':
                 self.timer.cancel()
@@ -49,52 +49,52 @@ class Clockwork:
                 self.start(parameter.value)
 
 
-class Pilot:
-    """Sees, and drives."""
+class Driver:
+    """Stores the sensors' data, and publishes commands."""
 
     def __init__(self, node):
-        """Connect."""
+        """Create the publisher and the subscriptions."""
         self.node, self.read = node, lambda name: node.get_parameter(name).value
-        self.last, self.seen_at, self.charge = None, None, None
+        self.distance, self.scan_time, self.charge = None, None, None
         self.publisher = node.create_publisher(Twist, 'cmd_vel', 10)
-        node.create_subscription(LaserScan, 'scan', self.see, qos_profile_sensor_data)
-        node.create_subscription(BatteryState, 'battery_state', self.feel, qos_profile_sensor_data)
+        node.create_subscription(LaserScan, 'scan', self.on_scan, qos_profile_sensor_data)
+        node.create_subscription(BatteryState, 'battery_state', self.on_battery, qos_profile_sensor_data)
 
-    def see(self, scan):
-        """Keep the distance ahead and its time."""
-        self.last = scan.ranges[round((0.0 - scan.angle_min) / scan.angle_increment)]
-        self.seen_at = self.node.get_clock().now()
+    def on_scan(self, scan):
+        """Store the distance straight ahead and the current time."""
+        self.distance = scan.ranges[round((0.0 - scan.angle_min) / scan.angle_increment)]
+        self.scan_time = self.node.get_clock().now()
 
-    def feel(self, battery):
-        """Keep the charge."""
+    def on_battery(self, battery):
+        """Store the charge in percent."""
         self.charge = battery.percentage * 100.0
 
-    def blind(self):
-        """Return whether the last look is too old."""
-        return self.seen_at is None or (self.node.get_clock().now() - self.seen_at).nanoseconds >= 500_000_000
+    def is_blind(self):
+        """Return whether the last distance is too old."""
+        return self.scan_time is None or (self.node.get_clock().now() - self.scan_time).nanoseconds >= 500_000_000
 
     def tick(self):
         """Publish a command."""
         command = Twist()
         weak = self.charge is not None and self.charge < self.read('battery_threshold')
-        if not weak and not self.blind():
+        if not weak and not self.is_blind():
             near, far = self.read('safety_distance'), self.read('slow_distance')
-            if self.last >= far:
+            if self.distance >= far:
                 command.linear.x = self.read('max_linear_velocity')
-            elif self.last > near:
-                command.linear.x = self.read('max_linear_velocity') * (self.last - near) / (far - near)
+            elif self.distance > near:
+                command.linear.x = self.read('max_linear_velocity') * (self.distance - near) / (far - near)
         self.publisher.publish(command)
 
 
 def main(args=None):
-    """Join the parts."""
+    """Create the node and its parts, and spin."""
     rclpy.init(args=args)
     try:
         node = rclpy.create_node('configured_node')
         declare_configuration(node)
-        pilot = Pilot(node)
-        node.add_post_set_parameters_callback(Clockwork(node, pilot.tick))
-        node.add_on_set_parameters_callback(Judge(pilot.read))
+        driver = Driver(node)
+        node.add_post_set_parameters_callback(RateKeeper(node, driver.tick))
+        node.add_on_set_parameters_callback(Validator(driver.read))
         rclpy.spin(node)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass

@@ -1,4 +1,4 @@
-"""Settings are a frozen dataclass, replaced as a whole; two threads and a lock."""
+"""Settings in a frozen dataclass that is replaced as a whole, with two threads and a lock."""
 
 from dataclasses import dataclass, fields, replace
 import threading
@@ -17,7 +17,7 @@ from sensor_msgs.msg import BatteryState, LaserScan
 
 @dataclass(frozen=True)
 class Settings:
-    """What it drives by."""
+    """The parameters that determine the speed and its rate."""
 
     max_linear_velocity: float
     safety_distance: float
@@ -33,72 +33,72 @@ class Settings:
         return float(np.interp(ahead, gaps, shares))
 
 
-NAMES = tuple(each.name for each in fields(Settings))
+NAMES = tuple(field.name for field in fields(Settings))
 
 
 class ConfiguredNode(Node):
-    """Holds its settings, the sight and a lock."""
+    """A node with settings, the last distance and charge, and a lock."""
 
     def __init__(self, **kwargs):
-        """Connect everything in one group."""
+        """Create all endpoints and timers in one callback group."""
         super().__init__('configured_node', **kwargs)
         declare_configuration(self)
         self.lock, self.group = threading.RLock(), ReentrantCallbackGroup()
         self.settings = Settings(**{name: self.get_parameter(name).value for name in NAMES})
-        self.ahead, self.charge, self.looks = None, None, 0
+        self.ahead, self.charge = None, None
         self.out = self.create_publisher(Twist, 'cmd_vel', 10)
         for kind, topic, callback in (
-                (LaserScan, 'scan', self.scanned), (BatteryState, 'battery_state', self.charged)):
+                (LaserScan, 'scan', self.on_scan), (BatteryState, 'battery_state', self.on_battery)):
             self.create_subscription(kind, topic, callback, qos_profile_sensor_data, callback_group=self.group)
-        self.sight = self.create_timer(0.5, self.lose_sight, callback_group=self.group)
+        self.watchdog = self.create_timer(0.5, self.forget_distance, callback_group=self.group)
         self.timer = self.create_timer(
             1.0 / self.settings.control_frequency, self.drive, callback_group=self.group)
-        self.add_on_set_parameters_callback(self.may)
-        self.add_post_set_parameters_callback(self.did)
+        self.add_on_set_parameters_callback(self.on_request)
+        self.add_post_set_parameters_callback(self.on_change)
 
     def proposed(self, parameters):
-        """Return the settings as they would be."""
+        """Return the settings with these parameters changed."""
         with self.lock:
-            return replace(self.settings, **{each.name: each.value for each in parameters if each.name in NAMES})
+            return replace(self.settings, **{p.name: p.value for p in parameters if p.name in NAMES})
 
-    def may(self, parameters):
-        """Judge."""
-        wanted = self.proposed(parameters)
-        why = contradiction(wanted.safety_distance, wanted.slow_distance)
-        return SetParametersResult(successful=not why, reason=why)
+    def on_request(self, parameters):
+        """Refuse distances that do not fit together."""
+        settings = self.proposed(parameters)
+        reason = contradiction(settings.safety_distance, settings.slow_distance)
+        return SetParametersResult(successful=not reason, reason=reason)
 
-    def did(self, parameters):
-        """Take over."""
+    def on_change(self, parameters):
+        """Replace the settings, and set the timer if its frequency has changed."""
         with self.lock:
             before, self.settings = self.settings, self.proposed(parameters)
         if self.settings.control_frequency != before.control_frequency:
             self.timer.timer_period_ns = round(10**9 / self.settings.control_frequency)
 
-    def scanned(self, scan):
-        """See."""
+    def on_scan(self, scan):
+        """Store the distance straight ahead."""
         with self.lock:
             self.ahead = scan.ranges[round(-scan.angle_min / scan.angle_increment)]
-        self.sight.reset()
+        self.watchdog.reset()
 
-    def lose_sight(self):
-        """See nothing."""
+    def forget_distance(self):
+        """Forget a distance that is too old."""
         with self.lock:
             self.ahead = None
 
-    def charged(self, battery):
-        """Hear of the battery."""
+    def on_battery(self, battery):
+        """Store the charge in percent."""
         with self.lock:
             self.charge = 100.0 * battery.percentage
 
     def drive(self):
-        """Publish."""
+        """Publish the speed."""
         with self.lock:
             speed = self.settings.speed(self.ahead, self.charge)
         self.out.publish(Twist(linear=Vector3(x=speed)))
 
 
 def main(args=None):
-    """Run it."""
+    """Run the node with two threads."""
     rclpy.init(args=args)
     executor = MultiThreadedExecutor(num_threads=2)
     try:

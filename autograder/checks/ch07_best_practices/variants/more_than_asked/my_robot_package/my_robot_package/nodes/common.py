@@ -1,11 +1,11 @@
-"""One main for every node of this package."""
+"""A main function that all nodes of this package share."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 
 
-def serve(factory, args):
-    """Spin what factory() returns with two threads until a signal comes."""
+def run_node(factory, args):
+    """Spin the node that factory() returns with two threads until it is interrupted."""
     rclpy.init(args=args)
     try:
         node = factory()

@@ -1,4 +1,4 @@
-"""A sensor that fails now and then, and a node that bears it."""
+"""A sensor that sometimes fails, and a node that tolerates this."""
 
 import random
 
@@ -11,7 +11,7 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 from std_msgs.msg import Float32, String
 from std_srvs.srv import Trigger
 
-from my_robot_package.nodes.common import serve
+from my_robot_package.nodes.common import run_node
 
 STATUS_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE,
@@ -20,7 +20,7 @@ PERIOD = 1.0
 
 
 class SensorError(RuntimeError):
-    """No answer from the sensor."""
+    """The sensor did not answer."""
 
 
 def read_sensor(generator, failure_probability):
@@ -32,10 +32,10 @@ def read_sensor(generator, failure_probability):
 
 
 class RobustNode(Node):
-    """Reads a sensor once a second and tells how it went."""
+    """A node that reads a sensor once a second and publishes the result."""
 
     def __init__(self, generator=None, **kwargs):
-        """Declare, then create."""
+        """Declare the parameters, then create the endpoints and the timer."""
         super().__init__('robust_node', **kwargs)
         self.declare_parameters('', [
             ('failure_probability', 0.1, ParameterDescriptor(
@@ -54,58 +54,58 @@ class RobustNode(Node):
         self.last_error = None
         self.out = self.create_publisher(String, 'status', STATUS_QOS)
         self.create_timer(PERIOD, self.timer_callback, callback_group=ReentrantCallbackGroup())
-        self.reset = self.create_service(Trigger, '~/how_are_you', self.answer)
+        self.service = self.create_service(Trigger, '~/how_are_you', self.answer)
         self.rate_out = self.create_publisher(Float32, '~/failure_rate', 10)
         self.declare_parameter('sensor_name', 'front')
-        self.readings = self.bad = 0
-        self.add_on_set_parameters_callback(self.judge)
+        self.readings = self.failed_readings = 0
+        self.add_on_set_parameters_callback(self.validate)
         self.get_logger().warning('this sensor is simulated')
         self.get_logger().info('Started.\nReads once a second.')
 
-    def judge(self, parameters):
-        """Refuse an empty name."""
+    def validate(self, parameters):
+        """Refuse an empty name of the sensor."""
         return SetParametersResult(
             successful=all(p.value != '' for p in parameters), reason='a sensor needs a name')
 
     def answer(self, request, response):
-        """Say how it goes."""
+        """Answer with the number of failures."""
         response.success = self.failures == 0
         response.message = f'{self.failures} failures'
         return response
 
     def timer_callback(self):
-        """Read once."""
+        """Read the sensor once, and publish the status."""
         try:
             read_sensor(self.generator, self.get_parameter('failure_probability').value)
         except SensorError as error:
-            self.out.publish(String(data=self.failed(error)))
+            self.out.publish(String(data=self.record_failure(error)))
             return
         self.readings += 1
-        self.rate_out.publish(Float32(data=self.bad / self.readings))
+        self.rate_out.publish(Float32(data=self.failed_readings / self.readings))
         before, self.failures = self.failures, 0
         if before:
             self.get_logger().info(f'Recovered after {before} errors')
         self.out.publish(String(data='ok'))
 
-    def failed(self, error):
-        """Count and log a failure; return what status says."""
+    def record_failure(self, error):
+        """Count and log a failure, and return the text of the status."""
         self.failures += 1
         self.readings += 1
-        self.bad += 1
-        most = self.get_parameter('max_errors').value
+        self.failed_readings += 1
+        max_errors = self.get_parameter('max_errors').value
         now = self.get_clock().now()
         if self.last_error is None or now - self.last_error >= Duration(seconds=5.0):
             self.last_error = now
             self.get_logger().error(f'reading failed: {error}')
-        if self.failures == most + 1:
+        if self.failures == max_errors + 1:
             self.get_logger().fatal(f'{self.failures} failures in a row')
-        word = 'unstable' if self.failures > most else 'failed'
+        word = 'unstable' if self.failures > max_errors else 'failed'
         return f'{word}: {self.failures} in a row'
 
 
 def main(args=None):
-    """Run."""
-    serve(RobustNode, args)
+    """Run the node until it is interrupted."""
+    run_node(RobustNode, args)
 
 
 if __name__ == '__main__':

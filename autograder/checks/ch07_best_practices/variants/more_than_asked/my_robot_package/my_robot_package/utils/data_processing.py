@@ -1,33 +1,33 @@
-"""Numbers of a laser scan, with numpy."""
+"""Utilities for laser scans, with numpy."""
 
 import numpy as np
 
 
 def mask_invalid(ranges, range_min, range_max):
-    """Return a list of the same length with nan in place of all that is no measurement."""
+    """Return the readings, with nan instead of those that are not measurements."""
     values = np.array(ranges, dtype=float)
     with np.errstate(invalid='ignore'):
-        kept = np.isinf(values) | ((values >= range_min) & (values <= range_max))
-    return np.where(kept, values, np.nan).tolist()
+        is_valid = np.isinf(values) | ((values >= range_min) & (values <= range_max))
+    return np.where(is_valid, values, np.nan).tolist()
 
 
 def mean_distance(ranges):
-    """Return the mean of what is finite, or None."""
+    """Return the mean of the finite readings, or None."""
     values = np.array(ranges, dtype=float)
     finite = values[np.isfinite(values)]
     return float(finite.mean()) if finite.size else None
 
 
 class DataProcessor:
-    """A ring of the newest means."""
+    """A ring buffer of the newest means."""
 
     def __init__(self, history=100):
-        """Make a ring with so many places."""
+        """Create a ring buffer for `history` means."""
         self._ring = np.full(history, np.nan)
         self._next = 0
 
     def process(self, ranges, range_min, range_max):
-        """Return the masked ranges, remember their mean."""
+        """Return the masked readings, and store their mean."""
         masked = mask_invalid(ranges, range_min, range_max)
         mean = mean_distance(masked)
         if mean is not None:
@@ -36,5 +36,5 @@ class DataProcessor:
         return masked
 
     def average(self):
-        """Return the mean of the ring, or None."""
+        """Return the mean of the stored means, or None."""
         return mean_distance(self._ring)

@@ -1,4 +1,4 @@
-"""The sensor processor as closures in main; what is published is a copy."""
+"""The sensor processor as closures in main, which publish copies of scans."""
 
 from copy import deepcopy
 
@@ -13,7 +13,7 @@ LIDAR = QoSProfile(reliability=ReliabilityPolicy.BEST_EFFORT, history=HistoryPol
 
 
 def main(args=None):
-    """Wire it up and spin."""
+    """Create the node and its endpoints, and spin."""
     rclpy.init(args=args)
     node = rclpy.create_node("sensor_processor")
     processor = DataProcessor(10)
@@ -21,10 +21,10 @@ def main(args=None):
     means = node.create_publisher(Float32, "mean_distance", 10)
 
     def on_scan(scan):
-        clean = deepcopy(scan)
-        clean.ranges = processor.process(scan.ranges, scan.range_min, scan.range_max)
-        filtered.publish(clean)
-        if mean_distance(clean.ranges) is not None:
+        masked = deepcopy(scan)
+        masked.ranges = processor.process(scan.ranges, scan.range_min, scan.range_max)
+        filtered.publish(masked)
+        if mean_distance(masked.ranges) is not None:
             means.publish(Float32(data=processor.average()))
             return
         node.get_logger().warning("the lidar sees no distance at all", throttle_duration_sec=1.0)

@@ -1,4 +1,4 @@
-"""The robust node with its counting in an object of its own."""
+"""The robust node with a separate object that counts failures."""
 
 from dataclasses import dataclass
 import random
@@ -30,8 +30,8 @@ class Streak:
     limit: int
     length: int = 0
 
-    def words(self):
-        """Put it into words."""
+    def status_text(self):
+        """Return the text of the status."""
         if not self.length:
             return "ok"
         return f"{'failed' if self.length <= self.limit else 'unstable'}: {self.length} in a row"
@@ -41,7 +41,7 @@ class RobustNode(Node):
     """Reads its sensor once a second."""
 
     def __init__(self, generator=None, **kwargs):
-        """Declare, and set the clock ticking."""
+        """Declare the parameters, and create the publisher and the timer."""
         super().__init__("robust_node", **kwargs)
         self.declare_parameters(
             "",
@@ -56,7 +56,7 @@ class RobustNode(Node):
             ],
         )
         seed = self.get_parameter("seed").value
-        self._dice = random.Random(seed or None) if generator is None else generator
+        self._generator = random.Random(seed or None) if generator is None else generator
         self._streak = Streak(self.get_parameter("max_errors").value)
         self._status = self.create_publisher(
             String,
@@ -70,10 +70,10 @@ class RobustNode(Node):
         self._timer = self.create_timer(1.0, self.timer_callback)
 
     def timer_callback(self):
-        """Read once."""
+        """Read the sensor once, log and publish."""
         failure = None
         try:
-            read_sensor(self._dice, self.get_parameter("failure_probability").value)
+            read_sensor(self._generator, self.get_parameter("failure_probability").value)
         except SensorError as error:
             failure = error
         before = self._streak.length
@@ -84,11 +84,11 @@ class RobustNode(Node):
                 self.get_logger().fatal("this is no longer normal")
         elif before:
             self.get_logger().info(f"Recovered after {before} errors")
-        self._status.publish(String(data=self._streak.words()))
+        self._status.publish(String(data=self._streak.status_text()))
 
 
 def main(args=None):
-    """Spin until told to stop."""
+    """Spin until the node is interrupted."""
     rclpy.init(args=args)
     node = None
     try:

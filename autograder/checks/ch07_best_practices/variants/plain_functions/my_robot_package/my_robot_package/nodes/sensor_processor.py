@@ -1,4 +1,4 @@
-"""The sensor processor without a class: a closure, and a multi-threaded executor."""
+"""The sensor processor without a class, with a multi-threaded executor."""
 
 from functools import partial
 
@@ -13,8 +13,8 @@ from std_msgs.msg import Float32
 BEST_EFFORT = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-def clean(node, processor, scans, means, msg):
-    """Publish one scan again, and the mean."""
+def publish_masked(node, processor, scans, means, msg):
+    """Publish the masked scan and the mean."""
     msg.ranges = processor.process(list(msg.ranges), msg.range_min, msg.range_max)
     scans.publish(msg)
     if mean_distance(msg.ranges) is not None:
@@ -26,7 +26,7 @@ def clean(node, processor, scans, means, msg):
 
 
 def main(args=None):
-    """Make the node, and spin it in several threads."""
+    """Create the node, and spin it with several threads."""
     rclpy.init(args=args)
     try:
         node = rclpy.create_node("sensor_processor")
@@ -35,7 +35,7 @@ def main(args=None):
         node.create_subscription(
             LaserScan,
             "scan",
-            partial(clean, node, DataProcessor(10), scans, means),
+            partial(publish_masked, node, DataProcessor(10), scans, means),
             BEST_EFFORT,
             callback_group=ReentrantCallbackGroup(),
         )

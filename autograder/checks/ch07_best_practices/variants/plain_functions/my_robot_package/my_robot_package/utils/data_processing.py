@@ -1,10 +1,10 @@
-"""The utilities with numpy inside and plain lists outside."""
+"""Utilities that use numpy internally and return plain lists."""
 
 import numpy as np
 
 
 def mask_invalid(ranges, range_min, range_max):
-    """Mask by a boolean array."""
+    """Return the readings, with nan where a boolean array says invalid."""
     readings = np.array(ranges, dtype=float)
     with np.errstate(invalid="ignore"):
         valid = np.isinf(readings) | ((readings >= range_min) & (readings <= range_max))
@@ -12,7 +12,7 @@ def mask_invalid(ranges, range_min, range_max):
 
 
 def mean_distance(ranges):
-    """Mean by numpy, back as a Python float."""
+    """Return the mean of the finite readings as a float, or None."""
     readings = np.array(list(ranges), dtype=float)
     finite = readings[np.isfinite(readings)]
     if finite.size == 0:
@@ -21,20 +21,20 @@ def mean_distance(ranges):
 
 
 class DataProcessor:
-    """A list that is cut by hand."""
+    """Stores the newest means in a list."""
 
     def __init__(self, history=100):
-        """Keep `history` means."""
+        """Store at most `history` means."""
         self._size = history
         self._means = []
 
     def process(self, ranges, range_min, range_max):
-        """Mask, and remember."""
+        """Return the masked readings, and store their mean."""
         masked = mask_invalid(ranges, range_min, range_max)
         mean = mean_distance(masked)
         self._means = [*self._means, *([] if mean is None else [mean])][-self._size :]
         return masked
 
     def average(self):
-        """Return the mean of what is remembered."""
+        """Return the mean of the stored means, or None."""
         return sum(self._means) / len(self._means) if self._means else None

@@ -16,7 +16,7 @@ class SensorError(RuntimeError):
 
 
 class State(Enum):
-    """How it goes; the value is the word."""
+    """The state of the sensor; the value is the word in its status."""
 
     FINE = "ok"
     FAILING = "failed"
@@ -31,15 +31,15 @@ def read_sensor(generator, failure_probability):
 
 
 class RobustNode(Node):
-    """Changes its state with each reading."""
+    """A node that changes its state with each reading."""
 
     def __init__(self, generator=None, **kwargs):
-        """Begin FINE."""
+        """Declare the parameters, and create the publisher and the timer."""
         super().__init__("robust_node", **kwargs)
         self.declare_all()
         seed = self.get_parameter("seed").get_parameter_value().integer_value
         self.generator = generator or random.Random(seed or None)
-        self.state, self.row = State.FINE, 0
+        self.state, self.failures = State.FINE, 0
         profile = QoSProfile(
             depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.publisher = self.create_publisher(String, "status", profile)
@@ -56,35 +56,35 @@ class RobustNode(Node):
                 integer_range=[IntegerRange(from_value=low, to_value=high)]))
 
     def timer_callback(self):
-        """Read once, and go to the next state."""
+        """Read the sensor once, and change to the next state."""
         try:
             read_sensor(self.generator, self.get_parameter("failure_probability").value)
         except SensorError as error:
             self.get_logger().error(f"{error}", throttle_duration_sec=5.0)
-            self.go(self.after_failure())
+            self.change_to(self.after_failure())
         else:
-            self.go(State.FINE)
-        tail = f": {self.row} in a row" if self.row else ""
+            self.change_to(State.FINE)
+        tail = f": {self.failures} in a row" if self.failures else ""
         self.publisher.publish(String(data=self.state.value + tail))
 
     def after_failure(self):
-        """Count, and return the state that follows."""
-        self.row += 1
-        borne = self.row <= self.get_parameter("max_errors").value
-        return State.FAILING if borne else State.UNSTABLE
+        """Count the failure, and return the next state."""
+        self.failures += 1
+        tolerated = self.failures <= self.get_parameter("max_errors").value
+        return State.FAILING if tolerated else State.UNSTABLE
 
-    def go(self, state):
-        """Log what is new in the new state."""
+    def change_to(self, state):
+        """Log a change of the state, and store the new one."""
         if state is State.UNSTABLE and self.state is not State.UNSTABLE:
             self.get_logger().fatal("unstable from now on")
         if state is State.FINE and self.state is not State.FINE:
-            self.get_logger().info(f"Recovered after {self.row} errors")
-            self.row = 0
+            self.get_logger().info(f"Recovered after {self.failures} errors")
+            self.failures = 0
         self.state = state
 
 
 def main(args=None):
-    """Run it in two threads."""
+    """Run the node with two threads."""
     rclpy.init(args=args)
     executor = MultiThreadedExecutor(num_threads=2)
     executor.add_node(RobustNode())

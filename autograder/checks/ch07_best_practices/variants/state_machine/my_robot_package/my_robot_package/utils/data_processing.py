@@ -1,26 +1,26 @@
-"""Plain loops, and a running sum."""
+"""Utilities with plain loops."""
 
 from collections import deque
 from math import isfinite, isnan, nan
 
 
 def mask_invalid(ranges, range_min, range_max):
-    """Go through the readings one by one."""
-    kept = []
+    """Return the readings, with nan instead of those that are not measurements."""
+    masked = []
     for reading in ranges:
         if isnan(reading):
-            kept.append(nan)
+            masked.append(nan)
         elif not isfinite(reading):
-            kept.append(reading)
+            masked.append(reading)
         elif reading < range_min or reading > range_max:
-            kept.append(nan)
+            masked.append(nan)
         else:
-            kept.append(reading)
-    return kept
+            masked.append(reading)
+    return masked
 
 
 def mean_distance(ranges):
-    """Add up and divide."""
+    """Return the mean of the finite readings, or None."""
     count, total = 0, 0.0
     for reading in filter(isfinite, ranges):
         count += 1
@@ -31,15 +31,15 @@ def mean_distance(ranges):
 
 
 class DataProcessor:
-    """Remembers means in a deque that it shortens itself."""
+    """Stores the newest means in a deque without a maximum length."""
 
     def __init__(self, history=100):
-        """Remember so many."""
+        """Store at most `history` means."""
         self.size = history
         self.means = deque()
 
     def process(self, ranges, range_min, range_max):
-        """Mask, and remember."""
+        """Return the masked readings, and store their mean."""
         masked = mask_invalid(ranges, range_min, range_max)
         if (mean := mean_distance(masked)) is not None:
             self.means.append(mean)
@@ -48,5 +48,5 @@ class DataProcessor:
         return masked
 
     def average(self):
-        """Return the mean of means."""
+        """Return the mean of the stored means, or None."""
         return sum(self.means) / len(self.means) if self.means else None

@@ -1,4 +1,4 @@
-"""The robust node with a coroutine for a timer's callback, and parameters in a dataclass."""
+"""The robust node with a coroutine as the timer's callback, and parameters in a dataclass."""
 
 from dataclasses import dataclass
 import random
@@ -13,11 +13,11 @@ from std_msgs.msg import String
 
 
 class SensorError(Exception):
-    """Expected now and then."""
+    """The sensor did not answer."""
 
 
 def read_sensor(generator, failure_probability):
-    """Ask the generator once."""
+    """Return 'Success' or raise SensorError."""
     if generator.random() >= failure_probability:
         return "Success"
     raise SensorError
@@ -25,7 +25,7 @@ def read_sensor(generator, failure_probability):
 
 @dataclass(frozen=True)
 class Settings:
-    """What can be set, with its range."""
+    """The parameters of the node."""
 
     failure_probability: float = 0.1
     seed: int = 0
@@ -33,20 +33,20 @@ class Settings:
 
     @classmethod
     def declare(cls, node):
-        """Declare each, and return what they are."""
-        share = FloatingPointRange(from_value=0.0, to_value=1.0)
-        table = [("failure_probability", cls.failure_probability, ParameterDescriptor(floating_point_range=[share]))]
+        """Declare the parameters, and return their values."""
+        unit_range = FloatingPointRange(from_value=0.0, to_value=1.0)
+        table = [("failure_probability", cls.failure_probability, ParameterDescriptor(floating_point_range=[unit_range]))]
         for name, low, high in (("seed", 0, 2**31 - 1), ("max_errors", 1, 1000)):
             limits = IntegerRange(from_value=low, to_value=high)
             table.append((name, getattr(cls, name), ParameterDescriptor(integer_range=[limits])))
-        return cls(**{each.name: each.value for each in node.declare_parameters("", table)})
+        return cls(**{p.name: p.value for p in node.declare_parameters("", table)})
 
 
 class RobustNode(Node):
-    """Reads once a second."""
+    """A node that reads a sensor once a second."""
 
     def __init__(self, generator=None, **kwargs):
-        """Declare and connect."""
+        """Declare the parameters, and create the publisher and the timer."""
         super().__init__("robust_node", **kwargs)
         self.settings = Settings.declare(self)
         self.errors = 0
@@ -54,30 +54,30 @@ class RobustNode(Node):
         if generator is None:
             self.generator = random.Random(self.settings.seed) if self.settings.seed else random.SystemRandom()
         qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.words = self.create_publisher(String, "status", qos)
-        self.create_timer(1.0, self.later, callback_group=ReentrantCallbackGroup())
+        self.publisher = self.create_publisher(String, "status", qos)
+        self.create_timer(1.0, self.async_callback, callback_group=ReentrantCallbackGroup())
 
-    async def later(self):
-        """Do it in a task."""
+    async def async_callback(self):
+        """Call the plain callback in a task."""
         self.timer_callback()
 
     def timer_callback(self):
-        """Say how the reading went."""
-        self.words.publish(String(data=self.outcome()))
+        """Publish the result of a reading."""
+        self.publisher.publish(String(data=self.read_status()))
 
-    def outcome(self):
-        """Read, and put it into words."""
+    def read_status(self):
+        """Read the sensor once, and return the text of the status."""
         try:
             read_sensor(self.generator, self.settings.failure_probability)
         except SensorError:
-            return self.failed()
+            return self.record_failure()
         errors, self.errors = self.errors, 0
         if errors > 0:
             self.get_logger().info(f"Recovered after {errors} errors")
         return "ok"
 
-    def failed(self):
-        """Count an error."""
+    def record_failure(self):
+        """Count and log a failure, and return the text of the status."""
         self.errors += 1
         self.get_logger().error("The sensor did not answer", throttle_duration_sec=5.0)
         if self.errors <= self.settings.max_errors:
@@ -88,7 +88,7 @@ class RobustNode(Node):
 
 
 def main():
-    """Run it."""
+    """Run the node until it is interrupted."""
     rclpy.init()
     node = RobustNode()
     try:

@@ -1,4 +1,4 @@
-"""A thread of its own does the work; callbacks only hand scans over."""
+"""The sensor processor with a worker thread, to which callbacks pass scans."""
 
 import queue
 import threading
@@ -13,21 +13,21 @@ from std_msgs.msg import Float32
 
 
 class SensorProcessor(Node):
-    """Takes scans, and lets a worker clean them."""
+    """A node whose worker thread masks scans."""
 
     def __init__(self):
-        """Connect, and start the worker."""
+        """Create the endpoints, and start the worker."""
         super().__init__("sensor_processor")
         self.scans = queue.Queue()
         self.processor = DataProcessor(history=10)
         self.filtered = self.create_publisher(LaserScan, "scan_filtered", qos_profile_sensor_data)
         self.mean = self.create_publisher(Float32, "mean_distance", 10)
         self.create_subscription(LaserScan, "scan", self.scans.put, qos_profile_sensor_data)
-        self.worker = threading.Thread(target=self.work)
+        self.worker = threading.Thread(target=self.run_worker)
         self.worker.start()
 
-    def work(self):
-        """Clean scans until None comes."""
+    def run_worker(self):
+        """Mask scans until the queue contains None."""
         while (scan := self.scans.get()) is not None:
             scan.ranges = self.processor.process(scan.ranges, scan.range_min, scan.range_max)
             self.filtered.publish(scan)
@@ -36,14 +36,14 @@ class SensorProcessor(Node):
             else:
                 self.mean.publish(Float32(data=self.processor.average()))
 
-    def end(self):
-        """Let the worker end."""
+    def stop(self):
+        """Stop the worker."""
         self.scans.put(None)
         self.worker.join()
 
 
 def main():
-    """Run it."""
+    """Run the node until it is interrupted."""
     rclpy.init()
     node = SensorProcessor()
     executor = SingleThreadedExecutor()
@@ -53,5 +53,5 @@ def main():
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
-        node.end()
+        node.stop()
         rclpy.try_shutdown()

@@ -1,0 +1,57 @@
+"""Calls the utilities for many drawn cases in one process, and judges the results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from autograder.checking import Workspace, expect
+from autograder.checking.probes import calls
+from autograder.checks.ch07_best_practices.support.contract import UTILS
+from autograder.checks.ch07_best_practices.support.drawn_readings import Readings, Series, averages, expect_all
+
+
+def judge_masked(
+    workspace: Workspace, cases: Sequence[Readings], judge: Callable[[Readings, list[float]], None]
+) -> None:
+    """Mask all readings in one process, and judge the results."""
+    steps = [calls.call("mask_invalid", list(case.readings), case.low, case.high) for case in cases]
+
+    def judge_outcome(pair: tuple[Readings, calls.StepResult]) -> None:
+        case, outcome = pair
+        masked = calls.value(outcome, case.call)
+        expect(isinstance(masked, list), f"{case.call} returned {masked!r} instead of a list.")
+        judge(case, list(masked))
+
+    expect_all(zip(cases, calls.calls(workspace, UTILS, *steps), strict=True), judge_outcome)
+
+
+def judge_means(
+    workspace: Workspace, cases: Sequence[list[float]], judge: Callable[[list[float], object], None]
+) -> None:
+    """Take the means of all lists in one process, and judge the results."""
+    outcomes = calls.calls(workspace, UTILS, *(calls.call("mean_distance", case) for case in cases))
+    pairs = zip(cases, outcomes, strict=True)
+    expect_all(pairs, lambda pair: judge(pair[0], calls.value(pair[1], f"mean_distance({pair[0]})")))
+
+
+def judge_averages(workspace: Workspace, cases: Sequence[Series], *, fraction: float) -> None:
+    """Fail the check unless a DataProcessor for each series, all in one process, has the right average at each time."""
+    plan = calls.Plan()
+    processors = [plan.add(calls.call("DataProcessor", *case.arguments)) for case in cases]
+    numbers: dict[Series, list[int]] = {}
+    for case, processor in zip(cases, processors, strict=True):
+        numbers[case] = []
+        for scan in case.scans:
+            plan.add(calls.call("process", list(scan.readings), scan.low, scan.high, on=processor))
+            numbers[case].append(plan.add(calls.call("average", on=processor)))
+    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+
+    def judge(case: Series) -> None:
+        for count, (number, expected) in enumerate(zip(numbers[case], averages(case), strict=True), start=1):
+            average = calls.value(outcomes[number], f"average(), after {case.first(count)},")
+            message = f"After {case.first(count)}, {case.name}.average() is {average} instead of {expected}."
+            if len(cases) > 1:
+                message += " The program has other DataProcessors, too."
+            expect(calls.same(average, expected), message, fraction=fraction)
+
+    expect_all(numbers, judge)

@@ -1,0 +1,77 @@
+"""Records when a sensor processor warns while scans come, and applies the contract's rules to this record."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from autograder.checking import LOCKSTEP, expect
+from autograder.checks.ch07_best_practices.support.contract import MAX_SILENCE, WARN_PERIOD
+from autograder.checks.ch07_best_practices.support.drawn_readings import Readings, mean_of
+from autograder.checks.ch07_best_practices.support.robot import Processor, count_logged, scan_of
+
+STEP = 0.1  # s between two looks at the log
+SLACK, REAL_SLACK = 0.15, 0.5  # s by which a time may differ, in lockstep and in real time
+
+
+@dataclass
+class WarningRecord:
+    """The scans that a processor received, and its warnings, with times in seconds.
+
+    What the processor logged before the record began is not part of it.
+
+    Attributes:
+        warnings: when the processor warned.
+        blind: the times of the first and the last scan in each stretch without a distance.
+    """
+
+    processor: Processor
+    warnings: list[float] = field(default_factory=list)
+    blind: list[tuple[float, float]] = field(default_factory=list)
+    _was_blind: bool = False
+    _earlier: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._earlier = count_logged(self.processor.output, "WARN")
+
+    @property
+    def slack(self) -> float:
+        """By how many seconds a time may differ."""
+        return SLACK if self.processor.time == LOCKSTEP else REAL_SLACK
+
+    def send(self, cases: Sequence[Readings], *, gap: float, seconds: float) -> None:
+        """Publish these scans in turn for some time, `gap` seconds apart."""
+        for case in itertools.islice(itertools.cycle(cases), round(seconds / gap)):
+            self.processor.publish("/scan", scan_of(case))
+            self._run_and_record(min(gap, STEP))
+            is_blind = mean_of(case.masked) is None
+            if is_blind:
+                start = self.blind.pop()[0] if self._was_blind else self.processor.seconds
+                self.blind.append((start, self.processor.seconds))
+            self._was_blind = is_blind
+            for _ in range(round(gap / STEP) - 1):
+                self._run_and_record(STEP)
+
+    def expect_throttled(self) -> None:
+        """Fail the check if the processor warned twice within 1 s."""
+        for earlier, later in itertools.pairwise(self.warnings):
+            expect(
+                later - earlier >= WARN_PERIOD - self.slack,
+                f"While scans without a distance came, it warned twice within {later - earlier:.1f} s.",
+                fraction=0.5,
+            )
+
+    def expect_prompt(self) -> None:
+        """Fail the check if scans without a distance came for more than 1.5 s without a warning."""
+        for start, end in self.blind:
+            times = [start, *(time for time in self.warnings if start <= time <= end), end]
+            wait = max(later - earlier for earlier, later in itertools.pairwise(times))
+            message = f"For {wait:.1f} s no scan had a distance, and it did not warn."
+            expect(wait <= MAX_SILENCE + self.slack, message, fraction=0.5)
+
+    def _run_and_record(self, seconds: float) -> None:
+        """Let the processor run, and note how often it warns meanwhile."""
+        self.processor.run(seconds)
+        count = count_logged(self.processor.output, "WARN") - self._earlier - len(self.warnings)
+        self.warnings += [self.processor.seconds] * count

@@ -1,0 +1,1 @@
+"""Reactive navigation in three nodes: one sees, one drives, one watches the other two."""

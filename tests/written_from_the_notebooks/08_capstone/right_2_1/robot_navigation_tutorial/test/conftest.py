@@ -1,0 +1,44 @@
+"""A ROS 2 context of its own for each test, so that no test hears another one."""
+
+import os
+import time
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+
+DEADLINE = 10.0  # s; only a broken node or a broken network ever waits so long
+
+
+class World:
+    """A context with an executor: the nodes of one test, and the only way to let them run."""
+
+    def __init__(self, context):
+        self.context = context
+        self.executor = SingleThreadedExecutor(context=context)
+
+    def add(self, node):
+        """Let the node take part, and return it."""
+        self.executor.add_node(node)
+        return node
+
+    def until(self, condition):
+        """Spin until the condition holds, or fail."""
+        deadline = time.monotonic() + DEADLINE
+        while not condition():
+            assert time.monotonic() < deadline, f'still not true after {DEADLINE:g} s'
+            self.executor.spin_once(timeout_sec=0.05)
+
+
+@pytest.fixture
+def world():
+    """Give the test a world whose domain no other test process uses."""
+    context = Context()
+    rclpy.init(context=context, domain_id=1 + os.getpid() % 100)
+    here = World(context)
+    yield here
+    for node in here.executor.get_nodes():
+        node.destroy_node()
+    here.executor.shutdown()
+    rclpy.try_shutdown(context=context)
