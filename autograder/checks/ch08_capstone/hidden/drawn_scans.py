@@ -12,8 +12,7 @@ from sensor_msgs.msg import LaserScan
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 from autograder.checks.ch08_capstone.support.clearances import HALF_ANGLE, MIDDLES
 
-# Radians to each side of a sector's edge, where a beam may count or not; 30° and 0.5 rad are further away.
-EDGE_TOLERANCE = math.radians(0.1)
+EDGE_TOLERANCE = math.radians(0.1)  # rad to each side of a sector's edge: less than from 0.5 rad to 30°
 USUAL_LIMITS = RANGE_MIN, RANGE_MAX  # m
 OTHER_LIMITS = (0.45, 8.25), (0.0, 6.5), (0.12, 0.75)  # m, of lidars for which other readings are phantoms
 SECTOR = math.degrees(HALF_ANGLE)  # degrees to each side of a sector's middle
