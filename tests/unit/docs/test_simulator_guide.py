@@ -15,7 +15,7 @@ from sim.__main__ import main
 from sim.bridge.settings import SETTINGS
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
-EXAMPLE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
+SCRIPT = runpy.run_path(str(DOCS / "build_site.py"))
 TEXT = (DOCS / "simulator.md").read_text(encoding="utf-8")
 
 
@@ -23,7 +23,7 @@ TEXT = (DOCS / "simulator.md").read_text(encoding="utf-8")
 def test_the_examples_run_and_draw_the_pictures_that_the_guide_shows(tmp_path: Path) -> None:
     for name in ("simulator.md", "kitchen.yaml"):
         shutil.copy(DOCS / name, tmp_path)
-    runpy.run_path(str(DOCS / "build_site.py"))["run_examples"](tmp_path / "simulator.md")
+    SCRIPT["run_examples"](tmp_path / "simulator.md")
     pictures = re.findall(r"!\[[^\]]+\]\((\S+)\)", TEXT)
     assert pictures
     assert all((tmp_path / name).is_file() for name in pictures)
@@ -32,7 +32,7 @@ def test_the_examples_run_and_draw_the_pictures_that_the_guide_shows(tmp_path: P
 @pytest.mark.slow
 def test_the_environment_of_the_guide_ends_at_a_collision_or_after_a_minute(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(DOCS)
-    (code,) = (code for code in EXAMPLE.findall(TEXT) if "import gymnasium" in code)
+    (code,) = (code for code in SCRIPT["EXAMPLE"].findall(TEXT) if "import gymnasium" in code)
     names: dict[str, Any] = {}
     exec(code, names)
     for action, end in (((1.0, 0.0), (-10.0, True, False)), ((-1.0, 1.0), (0.0, False, True))):
