@@ -233,7 +233,8 @@ def test_a_step_that_differs_from_its_page_or_fails_is_an_error(
 def test_make_tutorials_executes_the_one_tutorial_that_is_named() -> None:
     name = "launch_file"
     settings = [f"{SOURCE}=/", f"BIN={Path(sys.executable).parent}", f"PYTEST_ARGS=-k {name}"]
-    recipe = subprocess.check_output(["make", "-n", "tutorials", *settings], text=True, cwd=ROOT).splitlines()
+    command = ["make", "--no-print-directory", "-n", "tutorials", *settings]
+    recipe = subprocess.check_output(command, text=True, cwd=ROOT).splitlines()
     collect = {**os.environ, "PYTEST_ADDOPTS": "--collect-only -q"}
     collected = subprocess.check_output(["bash", "-c", recipe[-1]], env=collect, text=True, cwd=ROOT)
     assert re.findall(r"::(test_\S+)", collected) == [f"{test_a_tutorial_runs_as_printed.__name__}[{name}]"]
