@@ -103,7 +103,7 @@ def build(world: World, robots: tuple[RobotSpec, ...], seed: int, engine_name: E
         boxes=np.array((np.minimum(x1, x2), np.maximum(x1, x2), np.minimum(y1, y2), np.maximum(y1, y2))),
         circles=world.circles.copy(),
         grid=grid_of(walls)
-        if walls.shape[1] > MAX_WALLS_WITHOUT_GRID and hasattr(selected_engine, "fan_in_grid")
+        if walls.shape[1] > MAX_WALLS_WITHOUT_GRID and hasattr(selected_engine, "scan_ranges_in_grid")
         else None,
         tracks=tuple(_track(mover, number, seed) for number, mover in enumerate(world.movers)),
         bodies=tuple(_body(robot, seed) for robot in robots),

@@ -157,9 +157,9 @@ def _fan_ranges(
     arguments = (circles, beams.table, *origin, lidar.angle_min, beams.per_radian, beams.reach)
     ranges: Floats
     if grid is None or walls is not scene.walls:
-        ranges = scene.engine.fan(walls, *arguments)
+        ranges = scene.engine.scan_ranges(walls, *arguments)
     else:
-        ranges = scene.engine.fan_in_grid(
+        ranges = scene.engine.scan_ranges_in_grid(
             walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *arguments
         )
     return ranges
@@ -178,7 +178,7 @@ def _skewed_ranges(
         s, c = sincos(at.theta)
         origins[beam] = zero_if_tiny(at.x), zero_if_tiny(at.y)
         ray_directions[beam] = c * bx - s * by, s * bx + c * by
-    ranges: Floats = scene.engine.rays(walls, circles, origins, ray_directions)
+    ranges: Floats = scene.engine.beam_ranges(walls, circles, origins, ray_directions)
     return ranges
 
 

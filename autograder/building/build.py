@@ -114,5 +114,5 @@ def _missing(source: Path, name: str, packages: Collection[str]) -> str:
         return f"There is no ws/src folder: create the package {name} in it."
     if (source / name).is_dir():
         return f"src/{name} has no package.xml with <name>{name}</name>: without it colcon does not see a package."
-    others = ", ".join(sorted(packages)) or "no package at all"
-    return f"The package {name} is missing: src holds {others}."
+    others = ", ".join(sorted(packages)) or "no package"
+    return f"The package {name} is missing: src contains {others}."

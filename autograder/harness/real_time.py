@@ -34,7 +34,7 @@ class RealTimeHarness(Harness):
             command = [sys.executable, str(path), *program.arguments]
             process = self.enter_context(launch(command, self._sandbox))
             self._running = [*self._running, (program, process)]
-        is_up = self.wait_for(lambda: self._alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
+        is_up = self.wait_for(lambda: self._are_alive() and len(self.nodes()) >= len(self._running), START_SECONDS)
         if not is_up and len(self.nodes()) < len(self.running - self.optional):
             raise StudentError(diagnose_no_answer(Kind.NEVER_STARTED, f"{START_SECONDS:.0f} s", self.output))
 
@@ -62,11 +62,11 @@ class RealTimeHarness(Harness):
         pids = (process.innermost() for process in self.processes)
         with cpu_starvation.watch(pids, dt_ns / 1e9, self._workspace.time_record.add_wait):
             while (remaining_seconds := end_time - time.monotonic()) > 0:
-                self._alive()
+                self._are_alive()
                 self._grader_node.spin(min(remaining_seconds, 0.05))
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        return self.wait_for(lambda: self._alive() and condition(), seconds)
+        return self.wait_for(lambda: self._are_alive() and condition(), seconds)
 
     def rate(self, topic: str, since: float) -> float:
         return usual_rate([received.seconds for received in self.messages(topic, since=since)], self.seconds - since)
@@ -82,7 +82,7 @@ class RealTimeHarness(Harness):
         # The message may have waited while the grader was busy with another harness.
         return self.seconds - (time.time_ns() - arrived_ns) / 1e9
 
-    def _alive(self) -> bool:
+    def _are_alive(self) -> bool:
         """Drop optional programs that have ended, and return True.
 
         Raises:
@@ -109,7 +109,7 @@ class RealTimeHarness(Harness):
                 map(self._grader_node.publishers_of, self._subscribes)
             )
 
-        self.wait_for(lambda: self._alive() and is_complete(), SETTLE_SECONDS)
+        self.wait_for(lambda: self._are_alive() and is_complete(), SETTLE_SECONDS)
         return {topic for topic in self._publishes if self._grader_node.subscriptions_of(topic)}, {
             topic for topic in self._subscribes if self._grader_node.publishers_of(topic)
         }

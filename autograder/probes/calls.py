@@ -1,9 +1,9 @@
 """Calls a student's functions in the sandbox. Arguments and results are JSON values of limited size.
 
-    outcomes = calls(workspace, "wheels.data_processing",
-                     call("mask_invalid", [1.0, nan], 0.1, 3.5),
-                     call("DataProcessor", history=2), call("process", [1.0], 0.1, 3.5, on=1),
-                     attribute("history", on=1))
+    outcomes = run_steps(workspace, "wheels.data_processing",
+                         call("mask_invalid", [1.0, nan], 0.1, 3.5),
+                         call("DataProcessor", history=2), call("process", [1.0], 0.1, 3.5, on=1),
+                         attribute("history", on=1))
 
 Values are those of JSON: bool, int, float (including nan and infinities), str, list, dict and None. A tuple is returned
 as a list. For any other value, the name of its type is returned. Each step has an outcome, in order.
@@ -96,7 +96,7 @@ class Plan:
         return len(self.steps) - 1
 
 
-def calls(workspace: Workspace, module: str, *steps: Step, network: bool = False) -> list[StepResult]:
+def run_steps(workspace: Workspace, module: str, *steps: Step, network: bool = False) -> list[StepResult]:
     """Execute steps in one sandboxed process; return their outcomes.
 
     Args:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from autograder.probes.calls import Plan, Step, attribute, call, calls, result_of
+from autograder.probes.calls import Plan, Step, attribute, call, result_of, run_steps
 from autograder.run.workspace import Workspace
 
 PUBLISH = "rclpy.publisher.Publisher.publish"
@@ -39,6 +39,6 @@ def published(
         plan.add(Step(callback, arguments, on=numbers[number], runs_coroutine=True))
         sent = plan.add(attribute("call_args_list", on=publish))
         steps.append(plan.add(call("repr", result_of(sent), module="builtins")))
-    outcomes = calls(workspace, module, *plan.steps, network=True)
+    outcomes = run_steps(workspace, module, *plan.steps, network=True)
     texts = (outcomes[step].value for step in steps)
     return [text if isinstance(text, str) else "" for text in texts]

@@ -66,8 +66,8 @@ def require() -> None:
         raise too_slow_error()
     if is_over():
         sentence = (
-            f"Your programs, tests and launches took {_Budget.total / 60:.0f} minutes in all, and the grader waits no "
-            "longer: look for a sleep, or for a wait without a deadline."
+            f"Your programs, tests and launches took {_Budget.total / 60:.0f} minutes in total, which is "
+            "the limit: look for a sleep, or for a wait without a deadline."
         )
         raise StudentError(Diagnosis(Kind.TIMED_OUT, sentence))
 
@@ -75,7 +75,7 @@ def require() -> None:
 def too_slow_error() -> StudentError:
     """Return the error for programs that made the grading wait longer than allowed."""
     sentence = (
-        f"Your nodes kept the grader waiting for {MAX_ANSWER_SECONDS:.0f} s in all, and it waits no longer: a callback "
-        "has to return at once, without a sleep, a loop that waits or a blocking call."
+        f"Your nodes kept the grader waiting for {MAX_ANSWER_SECONDS:.0f} s in total, which is the limit: a callback "
+        "must return at once, without a sleep, a waiting loop or a blocking call."
     )
     return StudentError(Diagnosis(Kind.TIMED_OUT, sentence))

@@ -89,7 +89,7 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
             )
         packages[package.name] = package
         if len(packages) > MAX_PACKAGES:
-            raise _manifest_error(f"src holds more than {MAX_PACKAGES} packages: take out those that are not yours.")
+            raise _manifest_error(f"src contains more than {MAX_PACKAGES} packages: take out those that are not yours.")
     return packages, broken
 
 

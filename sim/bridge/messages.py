@@ -62,8 +62,8 @@ def scan_to_msg(scan: Scan, frame_id: str | None = None) -> Any:
 def odom_to_msg(robot: RobotState, time_ns: int, frame_id: str = "odom", child_frame_id: str = "base_link") -> Any:
     """Return the odometry of a robot's wheels as nav_msgs/Odometry.
 
-    The covariance of x, y and yaw is the robot's. That of the other axes is 0, because a robot on a plane does not
-    climb or tilt.
+    The covariance of x, y and yaw is the robot's. For the other axes it is 0, because a robot on a plane does not climb
+    or tilt.
 
     Args:
         robot: the robot.

@@ -25,7 +25,7 @@ from sim.engine.trig import TAU, sincos
 Floats = NDArray[np.float64]
 Float32s = NDArray[np.float32]
 
-__all__ = ["advance_free", "advance_near", "fan", "gap", "nearest", "rays", "to_readings"]
+__all__ = ["advance_free", "advance_near", "beam_ranges", "gap", "nearest", "scan_ranges", "to_readings"]
 
 # An upper bound, with a wide margin, on the error of numpy's arctan2 and the arithmetic after it, in radians.
 BEARING_ERROR = 1e-12
@@ -35,7 +35,7 @@ MAX_WALLS_UNFILTERED = 200
 LAPS = np.array(((0.0,), (1.0,)))
 
 
-def fan(
+def scan_ranges(
     walls: Floats,
     circles: Floats,
     table: Floats,
@@ -46,7 +46,7 @@ def fan(
     per_radian: float,
     reach: float,
 ) -> Floats:
-    """Return the ranges of a fan. Arguments and results are those of `loops.fan`, bit for bit."""
+    """Return the ranges of a scan. Arguments and results are those of `loops.scan_ranges`, bit for bit."""
     s, c = sincos(yaw)
     directions = c * table
     dx, dy = directions
@@ -161,8 +161,8 @@ def _circles_into(best: Floats, directions: Floats, circles: Floats, ox: float, 
         best[:] = TOUCHING
 
 
-def rays(walls: Floats, circles: Floats, origins: Floats, directions: Floats) -> Floats:
-    """Return the ranges of single beams. Arguments and results are those of `traverse.rays`, bit for bit."""
+def beam_ranges(walls: Floats, circles: Floats, origins: Floats, directions: Floats) -> Floats:
+    """Return the ranges of single beams. Arguments and results are those of `traverse.beam_ranges`, bit for bit."""
     best = np.full(len(origins), NOTHING)
     batch = max(1, 200_000 // max(1, walls.shape[1]))
     for at in range(0, len(origins), batch):

@@ -46,9 +46,9 @@ for _module in _SOURCES:
             register_jitable(_function)
 
 _compile = _compiler()
-fan = _compile(loops.fan)
-fan_in_grid = _compile(traverse.fan_in_grid)
-rays = _compile(traverse.rays)
+scan_ranges = _compile(loops.scan_ranges)
+scan_ranges_in_grid = _compile(traverse.scan_ranges_in_grid)
+beam_ranges = _compile(traverse.beam_ranges)
 advance_free = _compile(motion.advance_free)
 advance_near = _compile(motion.advance_near)
 gap = _compile(shapes.gap)

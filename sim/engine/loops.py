@@ -1,6 +1,6 @@
 """The scalar engine: scans as plain loops, which numba compiles and which the array engine uses for its hard cases.
 
-A fan is a scan measured at one instant. A wall covers one contiguous run of its beams, which is found from the bearings
+A scan is measured at one instant. A wall covers one contiguous run of its beams, which is found from the bearings
 of the wall's ends. The bearings are approximate, so beams very near an end are decided exactly.
 """
 
@@ -129,7 +129,7 @@ def circle_into(
             best[beam] = max(best[beam], inverse)
 
 
-def fan(
+def scan_ranges(
     walls: Floats,
     circles: Floats,
     table: Floats,
@@ -140,7 +140,7 @@ def fan(
     per_radian: float,
     reach: float,
 ) -> Floats:
-    """Return the ranges (beams,) of a fan at (ox, oy) with the heading `yaw`, in metres, valid up to `reach`.
+    """Return the ranges (beams,) of a scan at (ox, oy) with the heading `yaw`, in metres, valid up to `reach`.
 
     `walls` is (7, N): x1, x2, y1, y2, y2 - y1, x2 - x1 and the sum of the absolute values of the last two.
     `circles` is (M, 3). `table` is (2, beams): the beams' directions in the sensor's frame.

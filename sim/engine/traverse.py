@@ -23,7 +23,7 @@ FLAT = 1e-12  # with a smaller component of its direction, a beam stays in its c
 NEVER = 1e300
 
 
-def rays(walls: Floats, circles: Floats, origins: Floats, directions: Floats) -> Floats:
+def beam_ranges(walls: Floats, circles: Floats, origins: Floats, directions: Floats) -> Floats:
     """Return the ranges (K,) of beams from `origins` (K, 2) along the unit vectors `directions` (K, 2), in metres."""
     ranges = np.empty(len(origins))
     for beam in range(len(origins)):
@@ -119,7 +119,7 @@ def follow_beam(
             return best
 
 
-def fan_in_grid(
+def scan_ranges_in_grid(
     walls: Floats,
     starts: Integers,
     members: Integers,
@@ -137,7 +137,7 @@ def fan_in_grid(
     per_radian: float,
     reach: float,
 ) -> Floats:
-    """Return the ranges of a fan, as `loops.fan` does, but with the walls sorted into an `index.Grid`."""
+    """Return the ranges of a scan, as `loops.scan_ranges` does, but with the walls sorted into an `index.Grid`."""
     s, c = sincos(yaw)
     count = table.shape[1]
     directions = np.empty((2, count))

@@ -64,11 +64,11 @@ def caster(world: World, lidar: LidarSpec, engine: str) -> Callable[[Pose], obje
     last_arguments = (lidar.angle_min, beams.per_radian, beams.reach)
     walls, grid = layout(world.segments), scene.grid
     if grid is None:
-        return lambda pose: scene.engine.fan(
+        return lambda pose: scene.engine.scan_ranges(
             walls, scene.circles, beams.table, pose.x, pose.y, pose.theta, *last_arguments
         )
     cells = (grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows)
-    return lambda pose: scene.engine.fan_in_grid(
+    return lambda pose: scene.engine.scan_ranges_in_grid(
         walls, *cells, scene.circles, beams.table, pose.x, pose.y, pose.theta, *last_arguments
     )
 

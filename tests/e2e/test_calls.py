@@ -11,7 +11,7 @@ import pytest
 from autograder.diagnosis import Kind
 from autograder.exceptions import StudentError
 from autograder.harness import Workspace
-from autograder.probes.calls import StepResult, attribute, call, callback, calls, result_of, same, value
+from autograder.probes.calls import StepResult, attribute, call, callback, result_of, run_steps, same, value
 from autograder.ros import environment
 from autograder.suite import CheckFailed
 
@@ -93,7 +93,7 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 def test_values_are_passed_as_json_with_nan_and_infinities(workspace: Workspace) -> None:
-    doubled, limit = calls(workspace, "demo", call("double", [1.0, nan, inf]), attribute("LIMIT"))
+    doubled, limit = run_steps(workspace, "demo", call("double", [1.0, nan, inf]), attribute("LIMIT"))
     assert same(doubled.value, [2.0, nan, inf])
     assert doubled.printed == "doubling\n"
     assert limit.value == 3.5
@@ -101,24 +101,24 @@ def test_values_are_passed_as_json_with_nan_and_infinities(workspace: Workspace)
 
 def test_a_value_made_by_a_step_can_be_used_in_later_steps(workspace: Workspace) -> None:
     steps = (call("Counter", start=2), call("Counter", 3), call("add", result_of(1), on=0), attribute("count", on=0))
-    outcomes = calls(workspace, "demo", *steps)
+    outcomes = run_steps(workspace, "demo", *steps)
     assert [outcome.value for outcome in outcomes] == [None, None, 5, 5]
 
 
 def test_a_changed_argument_is_returned(workspace: Workspace) -> None:
-    (outcome,) = calls(workspace, "demo", call("empty", [1, 2]))
+    (outcome,) = run_steps(workspace, "demo", call("empty", [1, 2]))
     assert outcome.arguments == ([],)
 
 
 def test_a_subclass_that_equals_everything_returns_as_a_plain_number(workspace: Workspace) -> None:
-    (outcome,) = calls(workspace, "demo", call("lie"))
+    (outcome,) = run_steps(workspace, "demo", call("lie"))
     assert type(outcome.value) is float
     assert outcome.value == 1.0
     assert outcome.value != 2.0
 
 
 def test_an_exception_is_recognized_by_its_class_and_base_classes(workspace: Workspace) -> None:
-    subclass_error, pretended_error = calls(workspace, "demo", call("absent"), call("pretends"))
+    subclass_error, pretended_error = run_steps(workspace, "demo", call("absent"), call("pretends"))
     assert subclass_error.raised == "Absent"
     assert subclass_error.kinds == ("Absent", "ValueError", "Exception", "BaseException", "object")
     assert pretended_error.raised == "ValueError"
@@ -126,7 +126,7 @@ def test_an_exception_is_recognized_by_its_class_and_base_classes(workspace: Wor
 
 
 def test_exceptions_and_values_that_are_not_plain_are_named(workspace: Workspace) -> None:
-    failed, not_plain, unwritten = calls(workspace, "demo", call("fails"), call("strange"), call("unwritten"))
+    failed, not_plain, unwritten = run_steps(workspace, "demo", call("fails"), call("strange"), call("unwritten"))
     with pytest.raises(CheckFailed, match=r"fails\(\) raised ValueError: no such thing"):
         value(failed, "fails()")
     with pytest.raises(CheckFailed, match=r"strange\(\) returned a value of type object, instead of plain Python"):
@@ -137,13 +137,13 @@ def test_exceptions_and_values_that_are_not_plain_are_named(workspace: Workspace
 
 def test_a_coroutine_is_started_only_as_a_callback(workspace: Workspace) -> None:
     steps = (call("Node"), callback("breaks", on=0), callback("waits", on=0), call("breaks", on=0))
-    _, broken, waiting, called = calls(workspace, "demo", *steps)
+    _, broken, waiting, called = run_steps(workspace, "demo", *steps)
     assert (broken.raised, broken.message, waiting.raised, waiting.type) == ("ValueError", "a bug", "", "")
     assert (called.raised, called.type) == ("", "coroutine")
 
 
 def test_a_step_can_call_a_function_of_another_module(workspace: Workspace) -> None:
-    (outcome,) = calls(workspace, "demo", call("hypot", 3.0, 4.0, module="math"))
+    (outcome,) = run_steps(workspace, "demo", call("hypot", 3.0, 4.0, module="math"))
     assert outcome == StepResult(value=5.0, arguments=(3.0, 4.0))
 
 
@@ -158,7 +158,7 @@ def test_a_module_that_cannot_be_imported_is_diagnosed(
     workspace: Workspace, module: str, kind: Kind, words: str
 ) -> None:
     with pytest.raises(StudentError) as excinfo:
-        calls(workspace, module, call("f"))
+        run_steps(workspace, module, call("f"))
     assert excinfo.value.diagnosis.kind is kind
     assert words in excinfo.value.diagnosis.sentence
     assert "importlib" not in excinfo.value.diagnosis.detail  # the loader's frames do not help a student
@@ -166,7 +166,7 @@ def test_a_module_that_cannot_be_imported_is_diagnosed(
 
 def test_code_that_ends_the_process_is_reported_as_ended_early(workspace: Workspace) -> None:
     with pytest.raises(StudentError) as excinfo:
-        calls(workspace, "demo", call("gone"), call("double", [1]))
+        run_steps(workspace, "demo", call("gone"), call("double", [1]))
     assert excinfo.value.diagnosis.kind is Kind.ENDED_EARLY
 
 

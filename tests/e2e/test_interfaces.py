@@ -108,7 +108,7 @@ def test_an_invalid_definition_is_a_student_error(tmp_path: Path, line: str, wor
 
 
 def test_a_missing_package_is_named(tmp_path: Path) -> None:
-    with pytest.raises(StudentError, match=r"ghost_msgs is missing: src holds my_robot_interfaces\."):
+    with pytest.raises(StudentError, match=r"ghost_msgs is missing: src contains my_robot_interfaces\."):
         load_interfaces(_workspace(tmp_path), "ghost_msgs")
 
 

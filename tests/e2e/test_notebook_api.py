@@ -166,7 +166,7 @@ def test_a_failed_lidar_stops_the_reference_and_not_the_mutant(reference_workspa
 def test_a_missing_package_is_reported_in_a_sentence_without_a_traceback(reference_workspace: Path) -> None:
     notice = drive("no_such_package", "robot_controller", seconds=1, workspace=reference_workspace)
     assert isinstance(notice, Notice)
-    assert "The package no_such_package is missing: src holds my_robot_package" in notice.sentence
+    assert "The package no_such_package is missing: src contains my_robot_package" in notice.sentence
 
 
 def test_colcon_shows_no_stderr_for_a_successful_build(

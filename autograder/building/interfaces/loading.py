@@ -62,7 +62,7 @@ def _gather(
     """Add a package's texts to `texts` and its messages' sizes to `elements`, after those of its dependencies."""
     folder = packages.get(package)
     if folder is None:
-        sentence = f"The package {package} is missing: src holds {', '.join(sorted(packages)) or 'no package at all'}."
+        sentence = f"The package {package} is missing: src contains {', '.join(sorted(packages)) or 'no package'}."
         raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
     if package in dependants:
         sentence = (

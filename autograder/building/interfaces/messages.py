@@ -90,15 +90,17 @@ class PlainMessage:
 
 def to_bytes(message: PlainMessage) -> bytes:
     """Return a message's CDR, without a header. Raise a ValueError if a value does not match its type."""
-    kind = type(message)
-    writer = cdr.Writer(kind._known.members)
-    writer.write(kind._type, message)
+    message_class = type(message)
+    writer = cdr.Writer(message_class._known.members)
+    writer.write(message_class._type, message)
     return bytes(writer.data)
 
 
-def from_bytes(kind: type[PlainMessage], data: bytes) -> PlainMessage:
+def from_bytes(message_class: type[PlainMessage], data: bytes) -> PlainMessage:
     """Return the message whose CDR is `data`. Raise a ValueError if the bytes do not match the type."""
-    message: PlainMessage = cdr.Reader(data, kind._known.members, kind._known.make).read(kind._type)
+    message: PlainMessage = cdr.Reader(data, message_class._known.members, message_class._known.make).read(
+        message_class._type
+    )
     return message
 
 

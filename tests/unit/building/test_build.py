@@ -49,7 +49,7 @@ def test_a_missing_package_is_named_with_the_existing_ones(tmp_path: Path) -> No
     (tmp_path / NAME).rename(tmp_path / "other")
     kind, sentence = _fault(tmp_path)
     assert kind is Kind.MISSING_PACKAGE
-    assert sentence == "The package my_robot_package is missing: src holds my_robot."
+    assert sentence == "The package my_robot_package is missing: src contains my_robot."
 
 
 def test_a_folder_without_a_manifest_is_not_a_package(tmp_path: Path) -> None:
@@ -61,7 +61,7 @@ def test_a_folder_without_a_manifest_is_not_a_package(tmp_path: Path) -> None:
 @pytest.mark.promise('| A submission "holds no package" |')
 def test_a_missing_src_and_an_empty_src_have_different_messages(tmp_path: Path) -> None:
     assert "There is no ws/src folder" in _fault(tmp_path / "src")[1]
-    assert "src holds no package at all" in _fault(tmp_path)[1]
+    assert "src contains no package" in _fault(tmp_path)[1]
 
 
 @pytest.mark.parametrize("part", ["setup.py", "setup.cfg", f"resource/{NAME}", f"{NAME}/__init__.py"])

@@ -55,5 +55,5 @@ def test_without_a_grading_nothing_is_counted() -> None:
 
 def test_no_program_is_started_when_the_time_is_over(tmp_path: Path) -> None:
     patience.begin(0.0)
-    with pytest.raises(StudentError, match="in all, and the grader waits no longer"):
+    with pytest.raises(StudentError, match="in total, which is the limit"):
         launch(["true"], Sandbox(tmp_path))

@@ -117,9 +117,11 @@ def test_single_beams_and_fans_agree_bit_for_bit() -> None:
         fan = cast(simulation_at(pose, world), pose, FULL_TURN)
         origins = np.tile([pose.x, pose.y], (FULL_TURN.beams, 1))
         for name in ENGINES:
-            singles = engine(name).rays(walls, world.circles.copy(), origins, directions(pose, FULL_TURN))  # type: ignore[arg-type]
+            singles = engine(name).beam_ranges(walls, world.circles.copy(), origins, directions(pose, FULL_TURN))  # type: ignore[arg-type]
             np.testing.assert_array_equal(np.where(singles > FULL_TURN.range_max, np.inf, singles), fan)
-        plain = loops.fan(walls, world.circles, beams.table, pose.x, pose.y, pose.theta, 0.0, beams.per_radian, 30.0)
+        plain = loops.scan_ranges(
+            walls, world.circles, beams.table, pose.x, pose.y, pose.theta, 0.0, beams.per_radian, 30.0
+        )
         np.testing.assert_array_equal(np.where(plain > FULL_TURN.range_max, np.inf, plain), fan)
 
 
@@ -196,10 +198,10 @@ def test_the_compiled_sources_run_interpreted_too() -> None:
     circles = np.array([[1.0, 1.0, 0.3]])
     beams = beams_of(FULL_TURN)
     arguments = (circles, beams.table, 0.3, 0.4, 0.5, 0.0, beams.per_radian, beams.reach)
-    through_grid = traverse.fan_in_grid(
+    through_grid = traverse.scan_ranges_in_grid(
         walls, grid.starts, grid.members, grid.west, grid.south, grid.cell, grid.columns, grid.rows, *arguments
     )
-    np.testing.assert_array_equal(through_grid, arrays.fan(walls, *arguments))
+    np.testing.assert_array_equal(through_grid, arrays.scan_ranges(walls, *arguments))
     assert math.isclose(shapes.nearest(walls, circles, 0.3, 0.4), arrays.nearest(walls, circles, 0.3, 0.4))
     robot = np.zeros(14)
     moved_robot = robot.copy()

@@ -12,14 +12,14 @@ from autograder.checking import LOCKSTEP
 from autograder.checks.ch05_parameters.support import answers
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, SPECIFICATIONS
 from autograder.checks.ch05_parameters.support.drawn_requests import (
+    ACCEPTED,
     ANY,
-    APART,
     DISTANCES,
     FOREIGN,
     REFUSED,
     SAFETY,
     SLOW,
-    TAKEN,
+    WITHOUT_DISTANCES,
     dialogues,
     fits,
     starts,
@@ -32,10 +32,10 @@ SEEDS = range(4)
 Validate = Callable[["Node", dict[str, Any]], bool]
 KINDS: dict[str, tuple[Any, dict[str, Any]]] = {
     "contradiction": (dialogues(REFUSED), {"judged": (False,)}),
-    "together": (dialogues(TAKEN), {"judged": (True,)}),
-    "no_side_effects": (dialogues(APART, TAKEN, REFUSED, first=REFUSED, is_clear=True), {}),
-    "passes": (dialogues(APART, others=ANY), {"judged": (True,)}),
-    "beside_others": (dialogues(REFUSED, TAKEN, APART, is_clear=True, names_foreign=True), {}),
+    "together": (dialogues(ACCEPTED), {"judged": (True,)}),
+    "no_side_effects": (dialogues(WITHOUT_DISTANCES, ACCEPTED, REFUSED, first=REFUSED, is_clear=True), {}),
+    "passes": (dialogues(WITHOUT_DISTANCES, others=ANY), {"judged": (True,)}),
+    "beside_others": (dialogues(REFUSED, ACCEPTED, WITHOUT_DISTANCES, is_clear=True, names_foreign=True), {}),
 }
 
 
@@ -139,7 +139,7 @@ def test_asks_for_values_within_the_limits() -> None:
     requests: list[tuple[tuple[str, Any], ...]] = []
     for strategy, _ in KINDS.values():
         expect_each(strategy, lambda dialogue: requests.extend(dialogue.requests), random.Random(1), count=30)
-    for kind in (REFUSED, TAKEN):
+    for kind in (REFUSED, ACCEPTED):
         expect_each(starts(kind), requests.append, random.Random(1), count=30)
     for name, value in (pair for request in requests for pair in request if pair[0] != FOREIGN):
         specification = SPECIFICATIONS[name]

@@ -60,7 +60,7 @@ def test_robot(workspace: Workspace) -> None:
 
 def _expect(workspace: Workspace, seconds: float, linear: float, angular: float) -> None:
     call_text = f"command_at({seconds:g})"
-    (outcome,) = calls.calls(workspace, MODULE, calls.call("command_at", seconds))
+    (outcome,) = calls.run_steps(workspace, MODULE, calls.call("command_at", seconds))
     result = calls.value(outcome, call_text)
     is_pair = isinstance(result, list) and len(result) == 2 and all(isinstance(x, int | float) for x in result)
     expect(is_pair, f"{call_text} returned {result} instead of two numbers.")

@@ -141,13 +141,15 @@ def is_stop(received: ReceivedMessage) -> bool:
     return _matches(_velocity(received), STOP)
 
 
-def observed_reactions(clear: Sequence[ReceivedMessage], blocked: Sequence[ReceivedMessage]) -> Reactions:
+def observed_reactions(
+    clear_commands: Sequence[ReceivedMessage], blocked_commands: Sequence[ReceivedMessage]
+) -> Reactions:
     """Return a robot's reactions, given its commands for a clear path and for an obstacle just in front of it.
 
     The contract's reaction replaces one that the robot lacks. A robot has both if it drives on where the path is clear,
     always with the same command, and publishes another command where the path is blocked.
     """
-    forward, turn = _constant_velocity(clear), _constant_velocity(blocked)
+    forward, turn = _constant_velocity(clear_commands), _constant_velocity(blocked_commands)
     moves = forward is not None and not _matches(forward, STOP)
     if forward is None or not moves:
         forward = CONTRACT.forward

@@ -60,5 +60,5 @@ def call_two_nodes(workspace: Workspace) -> TwoNodes:
     scan = add(calls.call("LaserScan", module="sensor_msgs.msg", **CLEAR_SCAN))
     add(calls.call("scan_callback", calls.result_of(scan), on=first))
     clearance = add(calls.call("current_clearance", on=second))
-    results = calls.calls(workspace, MODULE, *plan.steps, network=True)
+    results = calls.run_steps(workspace, MODULE, *plan.steps, network=True)
     return TwoNodes(results[first], results[namespace], results[clearance])

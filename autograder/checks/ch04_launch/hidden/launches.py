@@ -10,7 +10,7 @@ from std_msgs.msg import String
 from autograder.checking import LaunchHarness, Workspace
 from autograder.checking.probes import launch_arguments, launch_probe, short_lived
 from autograder.checks.ch04_launch.hidden import included
-from autograder.checks.ch04_launch.hidden.given_package import given_parameters, given_programs
+from autograder.checks.ch04_launch.hidden.given_files import given_parameters, given_programs
 from autograder.checks.ch04_launch.hidden.inputs import Inputs, with_sim_time, with_values
 from autograder.checks.ch04_launch.support.contract import (
     CONFIG,

@@ -7,7 +7,7 @@ from functools import partial
 
 from autograder.checking import LaunchHarness, Workspace, expect, group, hint
 from autograder.checking.probes import launch_probe
-from autograder.checks.ch04_launch.hidden.given_package import changed_files
+from autograder.checks.ch04_launch.hidden.given_files import changed_files
 from autograder.checks.ch04_launch.hidden.inputs import Inputs
 from autograder.checks.ch04_launch.hidden.launches import Launches
 from autograder.checks.ch04_launch.support import contract

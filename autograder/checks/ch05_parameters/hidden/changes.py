@@ -12,12 +12,12 @@ from autograder.checks.ch05_parameters.support import bench, contract
 from autograder.checks.ch05_parameters.support.answers import expect_answers
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, PACKAGE
 from autograder.checks.ch05_parameters.support.drawn_requests import (
+    ACCEPTED,
     ANY,
-    APART,
     DISTANCES,
     FOREIGN,
     REFUSED,
-    TAKEN,
+    WITHOUT_DISTANCES,
     dialogues,
     values_text,
 )
@@ -62,7 +62,7 @@ def test_reason(robot: Robot, draw: random.Random, workspace: Workspace) -> None
         _change(robot, {name: current[name]})
     requests = [{"safety_distance": far}, {"slow_distance": near}, {"slow_distance": near, "safety_distance": far}]
     pairs: list[dict[str, float]] = [{**current, **request} for request in requests]
-    outcomes = calls.calls(
+    outcomes = calls.run_steps(
         workspace, f"{PACKAGE}.configuration", *(calls.call("contradiction", *pair.values()) for pair in pairs)
     )
     for request, pair, outcome in zip(requests, pairs, outcomes, strict=True):
@@ -89,7 +89,7 @@ def test_together(robot: Robot, draw: random.Random) -> None:
     _change(robot, request)
     wrong = parameters.differences(robot.parameters.values(*request), parameters.as_declared(request, robot.initial))
     expect(not wrong, f"It took {values_text(request)}, and yet {'; '.join(wrong)}.")
-    expect_answers(robot, dialogues(TAKEN), draw, judged=(True,), fraction=0.5)
+    expect_answers(robot, dialogues(ACCEPTED), draw, judged=(True,), fraction=0.5)
 
 
 @check(points=2, covers="no-effect", needs=("starts",), after=("contradiction",), doc=contract.PARAMETERS)
@@ -121,7 +121,7 @@ def test_no_side_effects(fresh_robot: Robot, draw: random.Random, workspace: Wor
         _change(robot, {"battery_threshold": 25}, fraction=0.75)
         situation = "After a refused request for 25 Hz and an accepted one without a frequency"
         expect_rate(robot.command_rate(), rate, situation, fraction=0.75)
-        after_a_refusal = dialogues(APART, TAKEN, REFUSED, first=REFUSED, is_clear=True)
+        after_a_refusal = dialogues(WITHOUT_DISTANCES, ACCEPTED, REFUSED, first=REFUSED, is_clear=True)
         expect_answers(robot, after_a_refusal, draw, fraction=0.75)
     period_before, period_after, accepted = bench.call_validate(workspace)
     observation = (
@@ -223,7 +223,7 @@ def test_passes(robot: Robot, draw: random.Random) -> None:
     _change(robot, robot.parameters.values("use_sim_time"))  # unchanged, because the harness's clock depends on it
     for name, value in (("battery_threshold", 30), ("max_linear_velocity", 0.4)):
         _change(robot, robot.without_read_only({name: value}))
-    expect_answers(robot, dialogues(APART, others=ANY), draw, judged=(True,), fraction=0.5)
+    expect_answers(robot, dialogues(WITHOUT_DISTANCES, others=ANY), draw, judged=(True,), fraction=0.5)
 
 
 @check(
@@ -236,7 +236,7 @@ def test_passes(robot: Robot, draw: random.Random) -> None:
 @hint("ROS stores what is in the very list that validate gets: leave the list as it is.")
 def test_beside_others(robot: Robot, draw: random.Random, workspace: Workspace) -> None:
     """In a request that also names use_sim_time, the rest is judged and carried out as usual, in any order."""
-    mixed_dialogues = dialogues(REFUSED, TAKEN, APART, is_clear=True, names_foreign=True)
+    mixed_dialogues = dialogues(REFUSED, ACCEPTED, WITHOUT_DISTANCES, is_clear=True, names_foreign=True)
     expect_answers(robot, mixed_dialogues, draw, fraction=0.5)
     foreign_values = robot.parameters.values(FOREIGN)
     for frequency in (draw.choice((20.0, 25.0)), draw.choice((4.0, 5.0))):

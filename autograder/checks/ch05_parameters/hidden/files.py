@@ -133,7 +133,7 @@ def _start_values(workspace: Workspace, names: tuple[str, ...]) -> dict[str, dic
         value_steps[name] = {
             parameter: plan.add(calls.attribute("value", on=step)) for parameter, step in steps.items()
         }
-    outcomes = calls.calls(workspace, "rclpy", *plan.steps, network=True)
+    outcomes = calls.run_steps(workspace, "rclpy", *plan.steps, network=True)
     for name, node in nodes.items():
         if outcomes[node].raised:
             error = parameters.shortened(outcomes[node].message)

@@ -23,12 +23,12 @@ from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import parameters
 from autograder.checks.ch05_parameters.support import bench, contract
 from autograder.checks.ch05_parameters.support.answers import allowed_start, expect_start, subtlety
-from autograder.checks.ch05_parameters.support.drawn_requests import REFUSED, TAKEN, Request, starts, values_text
+from autograder.checks.ch05_parameters.support.drawn_requests import ACCEPTED, REFUSED, Request, starts, values_text
 from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, expect_speed, missing_from, start_error
 from sim import Pose, RobotSpec, Simulation, World, box
 
 check = group("start")
-STARTS = {REFUSED: 12, TAKEN: 4}  # how many starts are drawn, all in one process
+STARTS = {REFUSED: 12, ACCEPTED: 4}  # how many starts are drawn, all in one process
 RADIUS = 0.18  # m: the robot's radius
 DRIVE_SECONDS = 16.0  # s: the length of the drive
 STOP_MARGIN = 0.02  # m between where the robot stands and where it should stand

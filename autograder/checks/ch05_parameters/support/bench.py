@@ -34,7 +34,7 @@ def declare(workspace: Workspace, starts: Sequence[Mapping[str, parameters.Value
         node = add(calls.call("Node", "bench", module="rclpy.node", cli_args=arguments, **BARE_OPTIONS))
         declared = add(calls.call("declare_configuration", calls.result_of(node)))
         steps.append((add(calls.call("contradiction", *distances)), declared))
-    outcomes = calls.calls(workspace, CONFIGURATION, *plan.steps, network=True)
+    outcomes = calls.run_steps(workspace, CONFIGURATION, *plan.steps, network=True)
     return [Start(outcomes[sentence], outcomes[declared]) for sentence, declared in steps]
 
 
@@ -67,7 +67,7 @@ def call_validate(workspace: Workspace) -> tuple[parameters.Value, parameters.Va
     period_after = period()
     validate(parameter("slow_distance", 2.0))
     acceptance = add(calls.attribute("successful", on=validate(parameter("safety_distance", 1.5))))
-    outcomes = calls.calls(workspace, MODULE, *plan.steps, network=True)
+    outcomes = calls.run_steps(workspace, MODULE, *plan.steps, network=True)
     return outcomes[period_before].value, outcomes[period_after].value, outcomes[acceptance].value
 
 
@@ -88,5 +88,5 @@ def set_use_sim_time(workspace: Workspace) -> parameters.Value:
         add(calls.call("append", calls.result_of(parameter), on=request))
     add(calls.call("set_parameters_atomically", calls.result_of(request), on=node))
     value_step = add(calls.attribute("value", on=add(calls.call("get_parameter", "use_sim_time", on=node))))
-    value: parameters.Value = calls.calls(workspace, MODULE, *plan.steps, network=True)[value_step].value
+    value: parameters.Value = calls.run_steps(workspace, MODULE, *plan.steps, network=True)[value_step].value
     return value

@@ -21,7 +21,8 @@ GAP, MARGIN = 30, 5  # cm: distances so far apart, and so far from their limits,
 # that compares the wrong ones gives the right answer.
 CLEAR_SAFETY, CLEAR_SLOW = st.integers(30, 45), st.integers(105, 200)
 CLEAR_CONTRADICTION = st.tuples(st.integers(230, HIGH), st.integers(LOW, 25))
-REFUSED, TAKEN, APART = "refused", "taken", "apart"  # the contract's answer, or a request without distances
+# The contract's answer to a request, or that a request changes no distance.
+REFUSED, ACCEPTED, WITHOUT_DISTANCES = "refused", "accepted", "without distances"
 Others = Mapping[str, st.SearchStrategy[parameters.Value]]
 OTHERS: Others = {  # parameters that have nothing to do with the distances
     "max_linear_velocity": st.sampled_from((0.4, 0.25)),
@@ -116,7 +117,7 @@ def dialogues(
 
     Args:
         draw: draws from a strategy.
-        kinds: the kinds of the requests: `REFUSED`, `TAKEN` or `APART`.
+        kinds: the kinds of the requests: `REFUSED`, `ACCEPTED` or `WITHOUT_DISTANCES`.
         first: the kind of the first request, if it differs.
         others: what a request may name besides the distances.
         is_clear: whether any rule for the distances gives the contract's answers: other checks find wrong rules.
@@ -131,7 +132,7 @@ def dialogues(
         if kind == REFUSED:
             clear = CLEAR_CONTRADICTION.map(_named_distances)
             distances = draw(clear if is_clear else contradictions(now[SAFETY], now[SLOW]))
-        elif kind == TAKEN:
+        elif kind == ACCEPTED:
             clear = clear_pairs | CLEAR_SAFETY.map(lambda new: {SAFETY: new}) | CLEAR_SLOW.map(lambda new: {SLOW: new})
             distances = draw(clear if is_clear else matches(now[SAFETY], now[SLOW], gap=1, margin=0))
             now = {**now, **distances}

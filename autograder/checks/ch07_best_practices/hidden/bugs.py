@@ -49,6 +49,6 @@ def call_with_bugs(workspace: Workspace) -> BugResults:
     seed = ["--ros-args", *parameters.override_arguments({"seed": 5})]
     other = add(calls.call("RobustNode", generator=calls.result_of(generator), cli_args=seed))
     add(calls.callback("timer_callback", on=other))
-    results = calls.calls(workspace, ROBUST, *plan.steps, network=True)
+    results = calls.run_steps(workspace, ROBUST, *plan.steps, network=True)
     callback_results = {bug: results[step] for bug, step in callback_steps.items()}
     return BugResults(results[node], results[namespace], callback_results, results[-1])

@@ -22,14 +22,14 @@ def judge_masked(
         expect(isinstance(masked, list), f"{case.call} returned {masked!r} instead of a list.")
         judge(case, list(masked))
 
-    expect_all(zip(cases, calls.calls(workspace, UTILS, *steps), strict=True), judge_outcome)
+    expect_all(zip(cases, calls.run_steps(workspace, UTILS, *steps), strict=True), judge_outcome)
 
 
 def judge_means(
     workspace: Workspace, cases: Sequence[list[float]], judge: Callable[[list[float], object], None]
 ) -> None:
     """Take the means of all lists in one process, and judge the results."""
-    outcomes = calls.calls(workspace, UTILS, *(calls.call("mean_distance", case) for case in cases))
+    outcomes = calls.run_steps(workspace, UTILS, *(calls.call("mean_distance", case) for case in cases))
     pairs = zip(cases, outcomes, strict=True)
     expect_all(pairs, lambda pair: judge(pair[0], calls.value(pair[1], f"mean_distance({pair[0]})")))
 
@@ -44,7 +44,7 @@ def judge_averages(workspace: Workspace, cases: Sequence[Series], *, fraction: f
         for scan in case.scans:
             plan.add(calls.call("process", list(scan.readings), scan.low, scan.high, on=processor))
             numbers[case].append(plan.add(calls.call("average", on=processor)))
-    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+    outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
 
     def judge(case: Series) -> None:
         for count, (number, expected) in enumerate(zip(numbers[case], averages(case), strict=True), start=1):

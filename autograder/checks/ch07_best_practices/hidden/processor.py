@@ -224,7 +224,7 @@ def _averages_of_two(workspace: Workspace) -> list[float]:
     for number, distance in ((0, 1.0), (1, 3.0), (0, 1.0)):
         plan.add(calls.call("process", [distance], 0.125, 3.5, on=processors[number]))
         average_steps.append(plan.add(calls.call("average", on=processors[number])))
-    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+    outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
     return [average for step in average_steps if isinstance(average := outcomes[step].value, float)]
 
 
@@ -239,7 +239,7 @@ def _expect_masked(workspace: Workspace, processor: Processor, cases: Sequence[R
     scans = "One scan" if len(cases) == 1 else f"{len(cases)} scans"
     expect(len(filtered) == len(cases), f"{scans} went in, {len(filtered)} came out.")
     steps = [calls.call("mask_invalid", list(case.readings), case.low, case.high) for case in cases]
-    outcomes = calls.calls(workspace, UTILS, *steps)
+    outcomes = calls.run_steps(workspace, UTILS, *steps)
 
     def judge(row: tuple[Readings, LaserScan, calls.StepResult]) -> None:
         case, message, outcome = row
@@ -265,7 +265,7 @@ def _student_averages(workspace: Workspace, cases: Sequence[Readings]) -> list[f
         masked = plan.add(calls.call("process", list(case.readings), case.low, case.high, on=processor))
         mean = plan.add(calls.call("mean_distance", calls.result_of(masked)))
         steps.append((mean, plan.add(calls.call("average", on=processor))))
-    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+    outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
     return _floats([outcomes[average].value for mean, average in steps if outcomes[mean].value is not None])
 
 

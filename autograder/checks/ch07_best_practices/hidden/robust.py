@@ -91,7 +91,7 @@ def _expect_one_question(workspace: Workspace, draw: random.Random) -> None:
         generator = plan.add(calls.call("Mock", module="unittest.mock", **returns))
         numbers.append(plan.add(calls.call("read_sensor", calls.result_of(generator), probability)))
         plan.add(calls.attribute("call_count", on=plan.add(calls.attribute("random", on=generator))))
-    outcomes = calls.calls(workspace, ROBUST, *plan.steps)
+    outcomes = calls.run_steps(workspace, ROBUST, *plan.steps)
     for (number, probability), step in zip(cases, numbers, strict=True):
         result, _, count = outcomes[step : step + 3]
         is_right = "SensorError" in result.kinds if number < probability else result.value == "Success"
@@ -130,7 +130,7 @@ def test_no_seed(workspace: Workspace, draw: random.Random) -> None:
     expect(all(runs), "It said nothing on status.")
     expect(runs[0] != runs[1], "Two runs without a seed failed at the very same readings.")
     seed = draw.randrange(10**6)
-    *_, shared_number = calls.calls(
+    *_, shared_number = calls.run_steps(
         workspace,
         ROBUST,
         calls.call("init", module="rclpy"),
@@ -195,7 +195,7 @@ def _expect_unstable_error(workspace: Workspace) -> None:
         plan.add(calls.callback("timer_callback", on=node))
         records = plan.add(calls.attribute("call_args_list", on=log))
         texts.append(plan.add(calls.call("repr", calls.result_of(records), module="builtins")))
-    outcomes = calls.calls(workspace, ROBUST, *plan.steps, network=True)
+    outcomes = calls.run_steps(workspace, ROBUST, *plan.steps, network=True)
     first, both = (str(outcomes[text].value).count("LoggingSeverity.ERROR") for text in texts)
     sentence = "The failure that made it unstable came more than 5 s after the last error"
     expect(first != 1 or both == 2, f"{sentence}, and was not logged as an error.", fraction=0.5)
@@ -271,7 +271,7 @@ def test_declared(workspace: Workspace) -> None:
         )
     for name, default in DEFAULTS.items():
         step, max_step = ranges[name][0].step, 1 if isinstance(default, int) else 0
-        message = f"The range of {name} has steps of {step:g}, and should take every value from end to end."
+        message = f"The range of {name} has steps of {step:g}, and should allow every value between its ends."
         expect(step <= max_step, message, fraction=0.5)
 
 

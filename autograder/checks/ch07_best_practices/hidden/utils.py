@@ -146,7 +146,7 @@ def test_input_untouched(workspace: Workspace, draw: random.Random) -> None:
         plan.add(calls.call("process", readings, *limits, on=processor))
         plan.add(calls.call("mean_distance", readings))
         numbers.append(masked)
-    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+    outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
 
     def judge(number: int) -> None:
         case = cases[numbers.index(number)]
@@ -209,7 +209,7 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
             plan.add(calls.call("process", calls.result_of(readings_step), case.low, case.high, on=processor))
             plan.add(calls.attribute("__name__", on=plan.add(calls.attribute("__class__", on=masked))))
             first_steps[case, kind] = masked
-    outcomes = calls.calls(workspace, UTILS, *plan.steps)
+    outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
 
     def judge(run: tuple[Readings, str]) -> None:
         case, kind = run
@@ -252,7 +252,7 @@ def test_blind_scans_leave_no_mean(workspace: Workspace, draw: random.Random) ->
 @hint("A library returns data; who calls it decides what is logged.", "Remove print().")
 def test_prints_nothing(workspace: Workspace, draw: random.Random) -> None:
     """The utilities print nothing: what to say, and how often, is the node's business."""
-    outcomes = calls.calls(
+    outcomes = calls.run_steps(
         workspace,
         UTILS,
         calls.call("StringIO", module="io"),

@@ -26,7 +26,7 @@ BLIND_SECONDS = 6  # s for which scans without a distance come
 def test_mask_invalid(workspace: Workspace) -> None:
     """mask_invalid replaces what is no measurement by nan, and keeps every reading's place."""
     readings = [1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5]
-    (outcome,) = calls.calls(workspace, contract.UTILS, calls.call("mask_invalid", readings, 0.12, 3.5))
+    (outcome,) = calls.run_steps(workspace, contract.UTILS, calls.call("mask_invalid", readings, 0.12, 3.5))
     call_text = "mask_invalid([1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5], 0.12, 3.5)"
     masked = calls.value(outcome, call_text)
     expect(calls.same(masked, [1.0, nan, inf, nan, nan, -inf, 0.12, 3.5]), f"{call_text} returned {masked}.")
@@ -38,7 +38,7 @@ def test_mask_invalid(workspace: Workspace) -> None:
 @hint(contract.RULE_MEAN, "Without a finite reading there is no mean: return None, not 0.0.")
 def test_mean_distance(workspace: Workspace) -> None:
     """mean_distance takes the mean of the finite readings, and says None when there is none."""
-    with_finite, without_finite = calls.calls(
+    with_finite, without_finite = calls.run_steps(
         workspace, contract.UTILS, calls.call("mean_distance", [1.0, nan, 2.0, inf]), calls.call("mean_distance", [nan])
     )
     mean = calls.value(with_finite, "mean_distance([1.0, nan, 2.0, inf])")
@@ -61,7 +61,7 @@ def test_data_processor(workspace: Workspace) -> None:
         calls.call("DataProcessor", 2),
         *(calls.call("process", [metres, 0.0], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan)),
     ]
-    _, first, *_, outcome = calls.calls(workspace, contract.UTILS, *steps, calls.call("average", on=0))
+    _, first, *_, outcome = calls.run_steps(workspace, contract.UTILS, *steps, calls.call("average", on=0))
     average = calls.value(outcome, "average()")
     situation = "After scans of 1, 2, 3 and nan m, DataProcessor(2).average()"
     expect(calls.same(average, 2.5), f"{situation} is {average} instead of 2.5.")
@@ -192,7 +192,7 @@ def test_recovers(workspace: Workspace) -> None:
 @hint("except SensorError as error: nothing wider. The generator that is handed in is the one that is used.")
 def test_shows_bugs(workspace: Workspace) -> None:
     """It does not catch a bug: with range(3) for a generator, timer_callback raises AttributeError."""
-    *_, result = calls.calls(
+    *_, result = calls.run_steps(
         workspace,
         contract.ROBUST,
         calls.call("init", module="rclpy"),

@@ -47,7 +47,7 @@ def expect_any_sector(workspace: Workspace, draw: random.Random) -> None:
         scan = plan.add(calls.call("LaserScan", module="sensor_msgs.msg", ranges=list(message.ranges), **fields))
         results.append(plan.add(calls.call("nearest", calls.result_of(scan), call.middle, call.half_angle)))
         expected.append(clearances.nearest(message, call.middle, call.half_angle))
-    outcomes = calls.calls(workspace, MODULE, *plan.steps)
+    outcomes = calls.run_steps(workspace, MODULE, *plan.steps)
     for call, result, distance in zip(sector_calls, results, expected, strict=True):
         actual = calls.value(outcomes[result], repr(call))
         expect(calls.same(actual, distance), f"{call!r} returned {actual}, instead of {distance:g}.", fraction=0.75)

@@ -116,7 +116,10 @@ def test_stops_in_time(drives: Drives, driving: System, artifacts: Artifacts) ->
     """When its lidar dies, or is blocked, it stands within 0.3 m, and stays where it is."""
     result, rules = drives.faulty_lidar, {}
     metres = float(np.interp(DEAD.start, result.recording.times, blindness.driven_distances(result.recording)))
-    message = f"In the {DEAD.start:.0f} s before its lidar died it drove {metres:.2f} m: who stops has driven before."
+    message = (
+        f"In the {DEAD.start:.0f} s before its lidar died it drove only {metres:.2f} m: stopping counts only "
+        "for a robot that drives."
+    )
     expect(metres >= MIN_WAY_SHARE * SPEED * DEAD.start, message)
     times, speed = result.recording.times, tracks.speeds(result.recording)
     for fault, max_metres in ((DEAD, STOPPING_DISTANCE), (BLOCKED, BLOCKED_STOPPING_DISTANCE)):

@@ -6,6 +6,6 @@ from autograder.checking.probes import calls
 
 def expect_greeting(workspace: Workspace, given: str, greeting: str) -> None:
     """Fail the check unless the function returns `greeting` for the name `given`."""
-    (answer,) = calls.calls(workspace, "greeting.greet", calls.call("greet", given))
+    (answer,) = calls.run_steps(workspace, "greeting.greet", calls.call("greet", given))
     returned = calls.value(answer, f"greet({given!r})")
     expect(returned == greeting, f"greet({given!r}) returned {returned!r}, not {greeting!r}.")
