@@ -85,6 +85,17 @@ def planar_matrix(transform: Any) -> np.ndarray[Any, Any]:
     return np.array([[cosine, -sine, position.x], [sine, cosine, position.y], [0.0, 0.0, 1.0]])
 
 
+def points_of(scan: Any, laser: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """The points that a scan hits, x and y (2, N), if the lidar's frame has the pose `laser` (3, 3)."""
+    ranges = np.array(scan.ranges)
+    (hits,) = np.nonzero(np.isfinite(ranges))
+    angles, distances = scan.angle_min + scan.angle_increment * hits, ranges[hits]
+    points: np.ndarray[Any, Any] = laser @ np.array(
+        [distances * np.cos(angles), distances * np.sin(angles), np.ones(len(hits))]
+    )
+    return points[:2]
+
+
 def stamp(header: Any) -> tuple[int, int]:
     return header.stamp.sec, header.stamp.nanosec
 
@@ -111,18 +122,41 @@ def test_each_scan_can_be_transformed_to_the_map_at_its_own_time(ros_domain: int
             parents.setdefault(transform.child_frame_id, set()).add(transform.header.frame_id)
             transforms_at.setdefault(stamp(transform.header), {})[transform.child_frame_id] = transform
     assert parents == {"laser": {"base_link"}, "base_link": {"odom"}, "odom": {"map"}}  # one parent each: a tree
-    transformed = [scan for scan in scans if stamp(scan.header) in transforms_at]
-    assert transformed
+    received = [stamp(message.transforms[0].header) for message in moving]
+    expected = [scan for scan in scans if received[0] <= stamp(scan.header) <= received[-1]]
+    assert expected
     true_poses = {stamp(odometry.header): odometry for odometry in truth}
-    laser = standing[0].transforms[0]
-    assert planar_matrix(laser)[:2, 2] == pytest.approx([0.1, 0.0])
-    for scan in transformed:
+    mount = planar_matrix(standing[0].transforms[0])
+    assert mount[:2, 2] == pytest.approx([0.1, 0.0])
+    for scan in expected:
         frames = transforms_at[stamp(scan.header)]
         assert scan.header.frame_id == "laser"
         base = planar_matrix(frames["odom"]) @ planar_matrix(frames["base_link"])
-        pose = true_poses[stamp(scan.header)].pose.pose
-        assert base[:2, 2] == pytest.approx([pose.position.x, pose.position.y], abs=1e-9)
-        assert true_poses[stamp(scan.header)].header.frame_id == "map"
+        if stamp(scan.header) in true_poses:  # the subscription may begin later than that of the frames
+            true_pose = true_poses[stamp(scan.header)]
+            position = true_pose.pose.pose.position
+            assert base[:2, 2] == pytest.approx([position.x, position.y], abs=1e-9)
+            assert true_pose.header.frame_id == "map"
+        x, y = points_of(scan, base @ mount)
+        assert np.minimum(abs(abs(x) - 3.0), abs(abs(y) - 2.0)) == pytest.approx(0.0, abs=1e-5)  # on one of the walls
+
+
+def test_the_frames_of_odometry_reach_a_late_subscription(ros_domain: int, listener: Listener) -> None:
+    moving, odometry = listener.collect(TFMessage, "/tf", TF_QOS), listener.collect(Odometry, "/odom", RELIABLE)
+    with driving_bridge(ros_domain, tf="odom", lidar_x=0.1, drift_linear=0.1):
+        listener.wait_until(lambda: len(moving) > 20 and len(odometry) > 20)
+        standing = listener.collect(TFMessage, "/tf_static", LATCHED)
+        listener.wait_until(lambda: bool(standing))
+    transforms = [transform for message in (*moving, *standing) for transform in message.transforms]
+    edges = {(transform.header.frame_id, transform.child_frame_id) for transform in transforms}
+    assert edges == {("odom", "base_link"), ("base_link", "laser")}
+    poses = {stamp(message.header): message.pose.pose for message in odometry}
+    common = [message.transforms[0] for message in moving if stamp(message.transforms[0].header) in poses]
+    assert common
+    for transform in common:
+        pose, moved = poses[stamp(transform.header)], transform.transform
+        assert (moved.translation.x, moved.translation.y) == (pose.position.x, pose.position.y)
+        assert moved.rotation == pose.orientation
 
 
 def test_a_late_subscription_gets_the_map(ros_domain: int, listener: Listener) -> None:
