@@ -65,7 +65,8 @@ def observe(simulation: Simulation, state: State, robot: str | None = None) -> S
     time_increment = 0.0
     if lidar.skew:
         time_increment = lidar.time_increment
-        sweep_ns = round((lidar.beams - 1) * time_increment * 1e9)
+        # A LaserScan has the increment as float32. Rounded up, so that no beam is later than the state.
+        sweep_ns = math.ceil((lidar.beams - 1) * float(np.float32(time_increment)) * 1e9)
     return Scan(
         max(time_ns - sweep_ns, 0),
         ranges,

@@ -198,10 +198,20 @@ def test_a_skewed_scan_takes_each_beam_from_where_the_robot_was(engine: str) -> 
     scan = scan_of(subject, state)
     sweep = 359 * scan.time_increment
     assert scan.time_increment == pytest.approx(0.2 / 360)
-    assert scan.stamp_ns == state.time_ns - round(sweep * 1e9)
+    assert state.time_ns - scan.stamp_ns == pytest.approx(sweep * 1e9, abs=10)
     assert scan.ranges[0] == pytest.approx(3.0 - state.robots[0].pose.x + 0.5 * sweep, abs=1e-6)
     still = simulation_at(state.robots[0].pose, subject.world, engine, LDS_01)
     assert scan.ranges[359] == scan_of(still).ranges[359]
+
+
+@pytest.mark.parametrize("lidar", [LDS_01, RPLIDAR_A1, UTM_30LX], ids=lambda lidar: f"{lidar.beams} beams")
+def test_no_beam_of_a_skewed_scan_is_later_than_the_newest_transform(lidar: LidarSpec) -> None:
+    """tf2 does not extrapolate, and a LaserScan has the time increment as float32."""
+    subject = simulation_at(Pose(), ROOM, lidar=replace(lidar, skew=True))
+    state = step(subject, start(subject), dt=0.4)
+    scan = scan_of(subject, state)
+    last_beam_ns = scan.stamp_ns + (lidar.beams - 1) * float(np.float32(scan.time_increment)) * 1e9
+    assert state.time_ns - 1 < last_beam_ns <= state.time_ns
 
 
 def test_a_skewed_scan_is_the_same_from_both_engines_while_turning() -> None:
