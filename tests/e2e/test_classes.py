@@ -114,17 +114,14 @@ def test_the_gradebook_has_the_points_that_the_grader_gave(graded: Graded, assig
         result = graded.parallel[pupil.name]
         grades = graded.room.grades(pupil.name)
         # A question for manual grading waits for its grade, or has no points because the student wrote nothing.
-        recorded = {name: (score, worth) for name, (score, worth, _) in grades.items() if name.startswith("grade-")}
-        assert all(by_hand or not score for name, (score, _, by_hand) in grades.items() if name not in recorded)
-        expected = {
-            f"grade-{name.replace('_', '-')}": (
-                pytest.approx(sum(check.points for check in result.group(name))),
-                pytest.approx(worth),
-            )
-            for name, worth in groups.items()
-        }
-        assert recorded == expected, pupil.name
-        assert sum(worth for _, worth in recorded.values()) == pytest.approx(result.max_score)
+        scores = {name: score for name, (score, _, _) in grades.items() if name.startswith("grade-")}
+        worths = {name: worth for name, (_, worth, _) in grades.items() if name.startswith("grade-")}
+        assert all(by_hand or not score for name, (score, _, by_hand) in grades.items() if name not in scores)
+        cells = {name: f"grade-{name.replace('_', '-')}" for name in groups}
+        points = {cell: sum(check.points for check in result.group(name)) for name, cell in cells.items()}
+        assert scores == pytest.approx(points), pupil.name
+        assert worths == pytest.approx({cell: groups[name] for name, cell in cells.items()}), pupil.name
+        assert sum(worths.values()) == pytest.approx(result.max_score)
 
 
 def test_parallel_gradings_give_the_same_results_as_serial_ones(graded: Graded) -> None:

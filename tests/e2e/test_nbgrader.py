@@ -94,12 +94,14 @@ def test_the_gradebook_has_the_points_that_the_grader_gave(
     student: str, graded_class: Classroom, results: dict[str, Result]
 ) -> None:
     result = results[student]
-    expected = {
-        f"grade-{name}": (pytest.approx(sum(check.points for check in result.group(name))), worth, False)
-        for name, worth in suites.hidden(ASSIGNMENT).groups.items()
+    groups, grades = suites.hidden(ASSIGNMENT).groups, graded_class.grades(student)
+    assert {name: score for name, (score, _, _) in grades.items()} == pytest.approx(
+        {f"grade-{name}": sum(check.points for check in result.group(name)) for name in groups}
+    )
+    assert {name: (maximum, by_hand) for name, (_, maximum, by_hand) in grades.items()} == {
+        f"grade-{name}": (worth, False) for name, worth in groups.items()
     }
-    assert graded_class.grades(student) == expected
-    assert sum(maximum for _, maximum, _ in graded_class.grades(student).values()) == result.max_score
+    assert sum(maximum for _, maximum, _ in grades.values()) == result.max_score
 
 
 def test_the_reference_gets_full_marks_flawed_answers_some_and_empty_ones_none(results: dict[str, Result]) -> None:

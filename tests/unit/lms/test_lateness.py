@@ -45,7 +45,9 @@ def delivered(after: timedelta) -> Delivery:
 def test_a_day_that_has_begun_counts_from_the_deadline_and_the_floor_stays(
     after: timedelta, days: int, share: float
 ) -> None:
-    assert DAILY.lateness_of("ada", delivered(after)) == Lateness(pytest.approx(share), days)
+    lateness = DAILY.lateness_of("ada", delivered(after))
+    assert lateness == Lateness(lateness.kept_share, days)
+    assert lateness.kept_share == pytest.approx(share)
 
 
 def test_a_flat_penalty_is_the_same_for_each_delay_and_no_penalty_exceeds_the_mark() -> None:

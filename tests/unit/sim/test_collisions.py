@@ -172,7 +172,8 @@ def test_clearance_names_the_nearest_thing_and_where_it_is() -> None:
     ):
         subject = simulation_at(pose, world)
         nearest = clearance(subject, start(subject))
-        assert (nearest.name, nearest.distance) == (name, pytest.approx(distance))
+        assert nearest.name == name
+        assert nearest.distance == pytest.approx(distance)
         assert (nearest.x, nearest.y) == pytest.approx(point)
     unnamed = simulation_at(Pose(0.0, 1.0), World.from_segments(box(4.0, 3.0)))
     assert clearance(unnamed, start(unnamed)).name == "wall 2"
