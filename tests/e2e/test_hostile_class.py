@@ -15,7 +15,8 @@ from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder.author.verification.cases import cases
 from autograder.author.verification.verdicts import Attack, CaseKind, first_sentence
-from autograder.checks.ch02_nodes.attacks import CHAPTER, CONTROLLER, PACKAGE, WRITEFILE, attacks, package_writer
+from autograder.checks.ch02_nodes.attack_payloads import PACKAGE
+from autograder.checks.ch02_nodes.attacks import CHAPTER, CONTROLLER, WRITEFILE, attacks, package_writer
 from autograder.grade.store import NOTEBOOK, RESULT
 from autograder.result.model import Result, from_json
 from autograder.run.sandbox import cgroup
@@ -139,7 +140,7 @@ def write_one_of_many(attack: Attack, number: int, folder: Path) -> None:
 @pytest.mark.parametrize("size", [200])
 def test_many_attacks_in_a_row_leave_nothing_on_the_machine(tmp_path: Path, size: int) -> None:
     only = suites.hidden(CHAPTER.assignment).with_dependencies(*FEW_CHECKS)
-    submissions = [
+    submissions: Writers = [
         (f"{attack.id}, {number}", partial(write_one_of_many, attack, number))
         for number, attack in enumerate(islice(cycle(ATTACKS.values()), size))
     ]

@@ -16,6 +16,7 @@ from autograder.building.colcon import StoppedBuildError
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.run.sandbox import Isolation
+from autograder.run.sandbox.messages import receive_message, send_message
 
 
 @pytest.mark.parametrize("error", [StudentError, StoppedBuildError])
@@ -24,9 +25,7 @@ def test_a_build_that_a_limit_ended_is_not_tried_again_for_the_same_request(
 ) -> None:
     ours, theirs = Pipe()
     with ours, theirs:
-        bundle_server.send_message(
-            theirs, bundle_server.failure_message(error(Diagnosis(Kind.BUILD_FAILED, "It was stopped.")))
-        )
+        send_message(theirs, bundle_server.failure_message(error(Diagnosis(Kind.BUILD_FAILED, "It was stopped."))))
         with pytest.raises(StudentError, match="It was stopped") as excinfo:
             bundle_server.request_build(ours, {}, tmp_path / "made")
     assert type(excinfo.value) is error
@@ -57,7 +56,7 @@ def test_submissions_that_wait_for_the_same_build_share_its_failure(
         with ours, theirs:
             bundle_server._serve_build(ours, {}, Isolation.BUBBLEWRAP)
             with pytest.raises(StoppedBuildError, match="It was stopped") as excinfo:
-                raise bundle_server._build_error(bundle_server.receive_message(theirs))
+                raise bundle_server._build_error(receive_message(theirs))
         return str(excinfo.value)
 
     with ThreadPoolExecutor(3) as threads:

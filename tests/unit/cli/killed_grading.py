@@ -15,10 +15,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import pytest
 from PIL import Image
 
 from autograder import cli
-from autograder.grade import batch, grade_submission
+from autograder.grade import grade_submission
 from autograder.grade.job import Job
 from autograder.result.model import Artifact, CheckResult, Result
 from autograder.run.sandbox.process import ExitReason
@@ -93,8 +94,9 @@ def grade(
                 os.kill(os.getpid(), signal.SIGKILL)
             changes += 1
 
-    batch.grade_submission = partial(grade_submission, run_job=Worker(failed_checks))
-    Suite.version = property(lambda suite: version)  # type: ignore[assignment, method-assign]
+    patch = pytest.MonkeyPatch()
+    patch.setattr("autograder.grade.batch.grade_submission", partial(grade_submission, run_job=Worker(failed_checks)))
+    patch.setattr(Suite, "version", property(lambda suite: version))
     os.dup2(printed, 1)
     words = ("grade", str(folder / "class"), "--assignment", CHAPTER, "--out", str(results), "-j", "1")
     sys.addaudithook(hook)

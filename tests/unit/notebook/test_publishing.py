@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +53,7 @@ def test_a_type_that_the_workspace_builds_is_refused(tmp_path: Path, monkeypatch
     text = "class Own:\n    get_fields_and_field_types = None\n"
     (package / "__init__.py").write_text(text)
     monkeypatch.syspath_prepend(package.parent)
-    import own_msgs
+    own_msgs = import_module("own_msgs")
 
     with pytest.raises(UsageError, match="a message of own_msgs, which your workspace builds: use an installed type"):
         plan_messages(lambda t: {"/own": own_msgs.Own()}, 1.0, tmp_path / "ws")

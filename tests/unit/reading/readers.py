@@ -29,6 +29,7 @@ from autograder.probes import (
     imports,
     installed,
     interfaces,
+    launch_arguments,
     launch_probe,
     manifest,
     parameters,
@@ -107,7 +108,7 @@ def _diagnose_crash(text: str, folder: Path) -> object:
 
 
 def _launch_output(text: str, folder: Path) -> object:
-    launch_probe.parse_arguments(text)
+    launch_arguments.parse_arguments(text)
     launch_probe.require_written(text)
     for program in launch_probe.started(text):
         launch_probe.node_names(text, program)

@@ -10,12 +10,12 @@ import pickle
 import subprocess
 import sys
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from numpy._core import _multiarray_umath
 
 from sim import (
     LDS_01,
@@ -83,7 +83,7 @@ def test_a_processor_without_vector_units_or_fused_multiply_add_computes_the_sam
     environment = {
         **os.environ,
         "PYTHONPATH": str(request.config.rootpath),
-        "NPY_DISABLE_CPU_FEATURES": " ".join(_multiarray_umath.__cpu_dispatch__),
+        "NPY_DISABLE_CPU_FEATURES": " ".join(import_module("numpy._core._multiarray_umath").__cpu_dispatch__),
         "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F",
         "NUMBA_CPU_NAME": "generic",
         "NUMBA_CPU_FEATURES": "",
