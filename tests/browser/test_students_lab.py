@@ -43,7 +43,7 @@ OUTPUTS = """() => window.jupyterapp.shell.currentWidget.content.widgets
 @pytest.fixture
 def chapter(lab: Lab, request: pytest.FixtureRequest) -> Path:
     """The first chapter's release in the test's own folder, reduced to the cells that write files."""
-    folder = lab.folder / request.node.name
+    folder: Path = lab.folder / request.node.name
     shutil.copytree(FIRST.folder, folder, ignore=shutil.ignore_patterns("build", "install", "log"))
     released = in_form(FIRST.read(), Form.RELEASED)
     writing_cells = [cell for cell in released.cells if cell.source.startswith("%%writefile")]

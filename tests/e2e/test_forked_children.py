@@ -57,7 +57,7 @@ def program(folder: Path, name: str, code: str, shebang: str = f"#!{sys.executab
 
 
 def run_both(
-    scratch: Path, commands: list[tuple[str, list[str], dict[str, Any]]], spec: Sandbox
+    scratch: Path, commands: list[tuple[str, list[str] | str, dict[str, Any]]], spec: Sandbox
 ) -> list[dict[str, Any]]:
     """Return the outcomes of commands that are run by a started and by a forked program."""
     parent = spec.workdir / "parent.py"
@@ -112,17 +112,16 @@ def test_a_forked_child_program_sees_the_same_environment_as_a_started_one() -> 
 def exit_reasons(scratch: Path) -> list[dict[str, Any]]:
     spec = program_sandbox(scratch)
     codes = {name: code for name, code in EXITS.items() if name != "left behind"}  # its output never ends
-    commands: list[tuple[str, Any, dict[str, Any]]]
-    commands = [(name, [program(spec.workdir, name, code)], {}) for name, code in codes.items()]
+    programs = {name: program(spec.workdir, name, code) for name, code in codes.items()}
     no_rights = spec.workdir / "no rights"
     no_rights.write_text(f"#!{sys.executable}")
     return run_both(
         scratch,
         [
-            *((name, command, {}) for name, command, _ in commands),
+            *((name, [path], {}) for name, path in programs.items()),
             ("is not there", [str(spec.workdir / "nothing")], {}),
             ("may not", [str(no_rights)], {}),
-            ("nowhere", [commands[0][1][0]], {"cwd": "no/such/folder"}),
+            ("nowhere", [programs["plain"]], {"cwd": "no/such/folder"}),
             ("another interpreter", [program(spec.workdir, "shell", "echo $0", "#!/bin/sh")], {}),
             ("an option", [program(spec.workdir, "option", "import sys\nprint(sys.flags.isolated)", _ISOLATED)], {}),
             ("a variable", [program(spec.workdir, "flags", "import sys\nprint(sys.flags.optimize)")], {"env": _PLAIN}),

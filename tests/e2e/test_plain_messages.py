@@ -78,7 +78,7 @@ def _real(plain: Any) -> Any:
     if not hasattr(plain, "_known"):
         return plain
     package, family, _ = plain._type.namespaced_name()
-    kind = import_module(f"{package}.{family}")
+    kind: Any = import_module(f"{package}.{family}")
     for part in plain._type.name.split("_"):
         kind = getattr(kind, part)
     return kind(**{name: _real(getattr(plain, name)) for name in plain._defaults})

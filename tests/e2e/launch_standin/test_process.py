@@ -76,11 +76,11 @@ def test_an_event_handler_refuses_targets_and_handlers_of_other_types() -> None:
     ):
         OnProcessExit(on_exit=["not an action"])
     with pytest.raises(TypeError, match="expected entities or a callable to handle an event with, got '<class 'int'>'"):
-        OnShutdown(on_shutdown=5)  # type: ignore[arg-type]
+        OnShutdown(on_shutdown=5)
 
 
 def test_opaque_functions_and_coroutines_refuse_values_of_other_types() -> None:
     with pytest.raises(TypeError, match="OpaqueFunction expected a callable for 'function', got '<class 'str'>'"):
-        OpaqueFunction(function="f")  # type: ignore[arg-type]
+        OpaqueFunction(function="f")
     with pytest.raises(TypeError, match="OpaqueCoroutine expected a coroutine function for 'coroutine'"):
-        OpaqueCoroutine(coroutine=print)  # type: ignore[arg-type]
+        OpaqueCoroutine(coroutine=print)

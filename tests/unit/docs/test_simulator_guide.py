@@ -40,7 +40,7 @@ def test_the_environment_of_the_guide_ends_at_a_collision_or_after_a_minute(monk
         environment.reset(seed=1)
         over = False
         while not over:
-            _, *result, _ = environment.step(np.float32(action))
+            _, *result, _ = environment.step(np.array(action, np.float32))
             over = any(result[1:])
         assert tuple(result) == end
     assert environment.state.time_ns == 60_000_000_000

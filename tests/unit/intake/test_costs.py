@@ -13,6 +13,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 from types import FrameType
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -24,6 +25,9 @@ from autograder.submission.intake import SubmittedFile, detect_layout, read_subm
 from autograder.submission.intake import archives as unpacking
 from autograder.submission.intake.ignored import MAX_ENVIRONMENTS, IgnoredPaths
 from autograder.submission.intake.notebooks import MAX_CELLS, MAX_VALUES, read_cells
+
+if TYPE_CHECKING:
+    from _typeshed import TraceFunction
 
 CHAPTER = "02_nodes"
 MIB = 1024 * 1024
@@ -103,7 +107,7 @@ def steps_of(work: Callable[[], object]) -> int:
     """Count the lines of Python that `work` executes."""
     count = 0
 
-    def count_line(frame: FrameType, event: str, argument: object) -> Callable[..., object]:
+    def count_line(frame: FrameType, event: str, argument: object) -> TraceFunction:
         nonlocal count
         count += event == "line"
         return count_line

@@ -294,8 +294,7 @@ def test_a_zip_with_a_wrong_size_is_unreadable(tmp_path: Path) -> None:
 
 def test_damaged_bytes_are_unreadable_and_named(tmp_path: Path) -> None:
     intact = _zip(tmp_path / "a.zip", {"src/x": os.urandom(500) + b"text " * 900}).read_bytes()
-    flipped, cut = bytearray(intact), intact[:200]
-    flipped[60:90] = bytes(byte ^ 0xFF for byte in flipped[60:90])
+    flipped, cut = intact[:60] + bytes(byte ^ 0xFF for byte in intact[60:90]) + intact[90:], intact[:200]
     for name, data in {"flipped.zip": flipped, "cut.zip": cut, "essay.pdf": b"%PDF-1.7", "empty.zip": b""}.items():
         (tmp_path / name).write_bytes(data)
         kind, sentence = _refusal(tmp_path / name)

@@ -191,7 +191,8 @@ def test_a_page_of_a_students_cells_requests_nothing_from_other_hosts(template: 
             {"output_type": "display_data", "data": {"text/html": attack, "text/plain": attack}},
         ]
     )
-    exporter = HTMLExporter(template_name=template, filters={"markdown2html": sanitized_markdown})
+    filters = {"markdown2html": sanitized_markdown}
+    exporter = HTMLExporter(template_name=template, filters=filters)  # type: ignore[no-untyped-call]
     html, _ = exporter.from_notebook_node(notebook)
     assert html.count("host.example") > 5
     page = Loaded()

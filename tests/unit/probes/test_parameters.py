@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from autograder.probes.parameters import (
     MAX_FILE,
     MAX_QUOTE,
+    Value,
     as_declared,
     differences,
     for_node,
@@ -64,7 +65,7 @@ def test_differences_distinguish_an_integer_from_a_double() -> None:
 
 
 def test_only_numbers_are_converted_to_the_declared_type() -> None:
-    declared = {"a": 20.0, "b": 1, "c": "x", "d": True}
+    declared: dict[str, Value] = {"a": 20.0, "b": 1, "c": "x", "d": True}
     converted = as_declared({"a": 45, "b": 2.0, "c": 3, "d": 1, "e": 4}, declared)
     assert {name: repr(value) for name, value in converted.items()} == {
         "a": "45.0",
@@ -155,6 +156,6 @@ def test_any_text_is_a_parameter_file_or_refused(
 
 
 def test_overrides_are_written_as_yaml() -> None:
-    values = {"hot": math.nan, "cool": 0.5, "on": True, "name": "07", "window": 2}
+    values: dict[str, Value] = {"hot": math.nan, "cool": 0.5, "on": True, "name": "07", "window": 2}
     overrides = ["hot:=.nan", "cool:=0.5", "on:=true", "name:='07'", "window:=2"]
     assert override_arguments(values) == [word for override in overrides for word in ("-p", override)]

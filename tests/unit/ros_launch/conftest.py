@@ -42,7 +42,8 @@ def run() -> Run:
     def run_entities(*entities: Any) -> int:
         service = launch.LaunchService()
         service.include_launch_description(launch.LaunchDescription(entities))
-        return service.run()
+        return_code: int = service.run()
+        return return_code
 
     return run_entities
 

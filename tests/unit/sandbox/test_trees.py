@@ -26,9 +26,9 @@ def change_after_lookup(monkeypatch: pytest.MonkeyPatch, looked_up: str, change:
     """Make a change right after a name of the submission has been looked up."""
     real = os.stat
 
-    def stat(path: str, *arguments: object, **options: object) -> os.stat_result:
-        info: os.stat_result = real(path, *arguments, **options)
-        if path == looked_up and "dir_fd" in options:
+    def stat(path: str, *, dir_fd: int | None = None, follow_symlinks: bool = True) -> os.stat_result:
+        info = real(path, dir_fd=dir_fd, follow_symlinks=follow_symlinks)
+        if path == looked_up and dir_fd is not None:
             change()
         return info
 

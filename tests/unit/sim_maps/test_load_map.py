@@ -40,7 +40,7 @@ def png(image: Image.Image) -> bytes:
     return stream.getvalue()
 
 
-def write(folder: Path, picture: bytes | None = None, *, name: str = "map.pgm", **fields: str | None) -> Path:
+def write(folder: Path, picture: bytes | None = None, name: str = "map.pgm", /, **fields: str | None) -> Path:
     """Write a map with changed fields (None omits one); return the YAML's path."""
     if picture is None:
         picture = pgm(ROOM)
@@ -119,15 +119,15 @@ def test_ascii_pgm_16_bit_pgm_and_png_give_the_same_map(tmp_path: Path) -> None:
     grey, colour = Image.fromarray(ROOM), Image.fromarray(ROOM).convert("RGB")
     expected = load_map(write(tmp_path)).segments
     for name, picture in (("a.pgm", letters), ("b.pgm", wide), ("c.png", png(grey)), ("d.png", png(colour))):
-        assert np.array_equal(load_map(write(tmp_path, picture, name=name)).segments, expected)
+        assert np.array_equal(load_map(write(tmp_path, picture, name)).segments, expected)
 
 
 def test_transparent_pixels_are_unknown_in_the_mode_scale(tmp_path: Path) -> None:
     pixels = np.dstack([ROOM, ROOM, ROOM, np.full_like(ROOM, 255)])
     pixels[0, 0, 3] = 0
-    path = write(tmp_path, png(Image.fromarray(pixels)), name="map.png", mode="scale")
+    path = write(tmp_path, png(Image.fromarray(pixels)), "map.png", mode="scale")
     assert len(load_map(path).segments) == 10
-    assert len(load_map(write(tmp_path, png(Image.fromarray(pixels)), name="map.png")).segments) == 8
+    assert len(load_map(write(tmp_path, png(Image.fromarray(pixels)), "map.png")).segments) == 8
 
 
 def test_the_course_s_map_loads_and_tolerance_straightens_it() -> None:
@@ -301,5 +301,5 @@ def test_any_value_of_any_field_is_a_map_or_a_world_error(tmp_path: Path, key: s
 def test_one_wrong_byte_in_a_png_is_a_map_or_a_world_error(tmp_path: Path, offset: int, byte: int) -> None:
     picture = bytearray(png(Image.fromarray(ROOM)))
     picture[offset % len(picture)] = byte
-    message = load_error(write(tmp_path, bytes(picture), name="map.png"))
+    message = load_error(write(tmp_path, bytes(picture), "map.png"))
     assert message is None or "map.png" in message

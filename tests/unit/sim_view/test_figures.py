@@ -65,7 +65,7 @@ def test_robots_and_their_scans_are_drawn_with_a_state(world: World) -> None:
     bare, full = show(simulation), show(simulation, start(simulation))
     assert not [line for line in bare.figure.axes[0].lines if line.get_color() == LIGHT.hit]
     (hits,) = [line for line in full.figure.axes[0].lines if line.get_color() == LIGHT.hit]
-    assert len(hits.get_xdata()) > 100
+    assert np.size(hits.get_xdata()) > 100
     assert "robot at (1.40 m, 0.80 m)" in full.alt
 
 
@@ -95,6 +95,7 @@ def test_a_track_is_coloured_by_time_or_clearance(recording: Recording, colour: 
     column = column if column.ndim == 1 else column[:, 0]
     assert np.array(track.get_array()) == pytest.approx((column[1:] + column[:-1]) / 2)
     scale = picture.figure.axes[0].child_axes[0]
+    assert isinstance(scale, Axes)
     assert colour in texts(scale)
 
 
@@ -123,7 +124,7 @@ def test_a_mark_shows_its_instant_and_its_note(recording: Recording) -> None:
 def test_the_mark_draws_a_line_to_the_nearest_obstacle(recording: Recording) -> None:
     row = int(np.argmin(recording.clearances[:, 0]))
     ax = plot(recording, mark=float(recording.times[row]), robot="one").figure.axes[0]
-    endpoints = [np.column_stack(line.get_data()) for line in ax.lines if len(line.get_xdata()) == 2]
+    endpoints = [np.column_stack(line.get_data()) for line in ax.lines if np.size(line.get_xdata()) == 2]
     gap = next(line for line in endpoints if line[0] == pytest.approx(recording.poses[row, 0, :2]))
     spec = recording.simulation.robots[0]
     assert np.hypot(*(gap[1] - gap[0])) == pytest.approx(recording.clearances[row, 0] + spec.radius, abs=1e-9)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -53,7 +54,7 @@ class Steps:
                 end.append(at)
                 return True
 
-            self._all(list(self.tree), 0, start, accept_end)
+            self._all(self.tree.data, 0, start, accept_end)
             self.matches += [(start, end[0])] if end else []
             if anchored:
                 break
@@ -189,8 +190,8 @@ def hard_texts(pattern: re.Pattern[Any], *, full: bool) -> Iterator[Callable[[in
     part is a character of the pattern, or a piece of a matching text.
     """
     maker = Steps(pattern, 0)
-    samples = [_sample(list(maker.tree), maker.flags, {}, repetitions) for repetitions in (0, 1)]
-    literals = (_char(node, maker.flags) for node in _walk(list(maker.tree)))
+    samples = [_sample(maker.tree.data, maker.flags, {}, repetitions) for repetitions in (0, 1)]
+    literals = (_char(node, maker.flags) for node in _walk(maker.tree.data))
     chars = sorted({*literals, *"".join(samples)} - {""})
     heads, pairs = {""}, set[str]()
     for sample in samples:
@@ -201,7 +202,11 @@ def hard_texts(pattern: re.Pattern[Any], *, full: bool) -> Iterator[Callable[[in
     parts = {*chars[:16], *pairs, *heads, *lines} - {""}
     tails = ("\0", '"\0"\0') if full else ("\0",)  # the second has characters that a class such as [^"'] excludes
     for head, part, tail in product(sorted(heads, key=len)[:8], sorted(parts), tails):
-        yield lambda count, head=head, part=part, tail=tail: head + part * count + tail
+        yield partial(_repeated, head, part, tail)
+
+
+def _repeated(head: str, part: str, tail: str, count: int) -> str:
+    return head + part * count + tail
 
 
 def _walk(nodes: Any) -> Iterator[Any]:

@@ -61,9 +61,13 @@ def test_05_asks_for_values_outside_of_each_range() -> None:
     for seed in SEEDS:
         for specification in limited:
             low, high = declaration._values_outside(specification, random.Random(seed))
+            assert type(low) is type(high) is type(specification.default)
+            assert isinstance(low, int | float)
+            assert isinstance(high, int | float)
+            assert specification.low is not None
+            assert specification.high is not None
             assert low < specification.low
             assert high > specification.high
-            assert type(low) is type(high) is type(specification.default)
 
 
 def test_07_finds_seeds_that_a_parameter_may_have() -> None:
