@@ -50,7 +50,7 @@ test:           ## set up, then lint, types, doctor and all tests except the nig
 	$(BIN)/autograder doctor
 	$(PYTEST) -m "not nightly" $(PYTEST_ARGS)
 
-check:          ## lint, types and the quick unit tests: a minute
+check:          ## lint, types and the quick unit tests: a few minutes
 	@$(BOOTSTRAP) --dev
 	@$(SIDE_BY_SIDE) $(LINTERS) fast-engine
 	$(PYTEST) tests/unit -m "not slow" $(PYTEST_ARGS)
