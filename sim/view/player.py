@@ -19,15 +19,16 @@ from sim.view.run_data import Margin, encode
 from sim.view.theme import DARK, LIGHT, Theme
 
 _HERE = Path(__file__).parent
-_PARTS = ("player_data", "player_drawing", "player_view", "player_lists", "player")
 
-SCRIPT = "\n".join(
-    [
-        f'(() => {{\n"use strict";\nconst LOOK = {to_json()};',
-        *((_HERE / f"{part}.js").read_text(encoding="utf-8") for part in _PARTS),
-        "})();",
-    ]
-)
+
+def script_of(*parts: str) -> str:
+    """Return the script of the drawing, followed by the JavaScript files `parts` of this folder, without a suffix."""
+    shared = ("player_data", "player_drawing", "player_view", "player_lists", "player_panel")
+    texts = ((_HERE / f"{part}.js").read_text(encoding="utf-8") for part in (*shared, *parts))
+    return "\n".join([f"const LOOK = {to_json()};", *texts])
+
+
+SCRIPT = f'(() => {{\n"use strict";\n{script_of("player")}\n}})();'
 """The script that makes every `div.run-player` above it interactive."""
 
 
@@ -96,7 +97,12 @@ def style() -> str:
         f".run-player {{ {light} }}\n"
         f'@media (prefers-color-scheme: dark) {{ .run-player:not([data-theme="light"]) {{ {dark} }} }}\n'
         f'.run-player[data-theme="dark"] {{ {dark} }}\n'
-    ) + (_HERE / "player.css").read_text(encoding="utf-8")
+    ) + sheet()
+
+
+def sheet() -> str:
+    """Return the style sheet of players, without colours."""
+    return (_HERE / "player.css").read_text(encoding="utf-8")
 
 
 def page(recording: Recording, margins: Sequence[Margin] = ()) -> str:

@@ -1,7 +1,11 @@
-// Draws a run with the styles in LOOK. Coordinates are in metres, and `dot` is the size of a page's pixel in metres.
+// Draws an instant of a run with the styles in LOOK. Coordinates are in metres, and `dot` is the size of a page's pixel
+// in metres. The run contains what does not change: the world, and each robot's name, shape and lidar. An instant contains
+// the time, the collisions until then, the positions of moving obstacles, and each robot's state:
+// {pose, velocity, command, isObeying, gap, met, scan: {pose, ranges}}.
 const POINT = 4 / 3; // pixels
 const AHEAD = 2; // s: the duration of the path that is drawn for the latest command
 const MET_SECONDS = 1; // s: the duration for which a robot shows a collision
+const MAX_GAP = 999; // m: larger gaps mean that there is no obstacle
 
 const line = points => { const path = new Path2D(); points.forEach(([x, y]) => path.lineTo(x, y)); return path; };
 const loop = points => { const path = line(points); path.closePath(); return path; };
@@ -26,17 +30,19 @@ const makeSheet = (pen, colour, dot, place) => {
     pen.strokeStyle = ink(mark.line, own);
     pen.stroke(path);
   };
-  const drawWords = ({mark, words, spot, by, align}) => {
+  const drawWords = ({mark, words, spot, by, align, angle, fill}) => {
     const [x, y] = place(...spot);
     pen.save();
     pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+    pen.translate(x + by[0] * POINT, y + by[1] * POINT);
+    pen.rotate(-angle);
     pen.font = `${mark.size * POINT}px system-ui, sans-serif`;
     [pen.textAlign, pen.textBaseline, pen.lineJoin, pen.lineWidth] = [align, "middle", "round", mark.width * POINT];
-    [pen.strokeStyle, pen.fillStyle] = [colour(mark.line), colour(mark.fill)];
+    [pen.strokeStyle, pen.fillStyle] = [colour(mark.line || "paper"), colour(fill || mark.fill)];
     pen.setLineDash([]);
     words.split("\n").forEach((text, number) => {
-      const where = [text, x + by[0] * POINT, y + (by[1] + 1.35 * number * mark.size) * POINT];
-      pen.strokeText(...where);
+      const where = [text, 0, 1.35 * number * mark.size * POINT];
+      if (mark.line) pen.strokeText(...where);
       pen.fillText(...where);
     });
     pen.restore();
@@ -45,7 +51,9 @@ const makeSheet = (pen, colour, dot, place) => {
     colour, dot,
     radius: name => LOOK.marks[name].size * POINT * dot / 2,
     add: (name, path, own = "") => marks.push({mark: LOOK.marks[name], path, own}),
-    write: (words, spot, by, align) => marks.push({mark: LOOK.marks.words, words, spot, by, align}),
+    // Writes words at a place in metres, moved `by` points right and down, and turned to the left by an angle in radians.
+    write: (words, spot, by, align, {name = "words", angle = 0, fill = ""} = {}) =>
+      marks.push({mark: LOOK.marks[name], words, spot, by, align, angle, fill}),
     draw: () => {
       [pen.lineCap, pen.lineJoin] = ["round", "round"];
       marks.sort((one, other) => one.mark.layer - other.mark.layer);
@@ -60,7 +68,7 @@ const makeSheet = (pen, colour, dot, place) => {
 
 const reach = robot => Math.max(...robot.body.map(([x, y]) => Math.hypot(x, y)));
 
-// Draws what does not move: room, furniture, walls, goals, starts, and the routes of moving obstacles.
+// Draws what does not move: room, furniture, walls, goals, starts, the routes of moving obstacles, and names.
 const makeWorld = run => {
   const {world} = run, parts = [["floor", loop(world.room)]], walls = new Path2D();
   for (const points of world.solid) parts.push(["solid", loop(points)]);
@@ -75,19 +83,22 @@ const makeWorld = run => {
     parts.push(["start", disc(x, y, radius)], ["start nose", line(ahead)]);
   }
   for (const points of world.routes) parts.push(["route", line(points)]);
-  return sheet => parts.forEach(([name, path]) => sheet.add(name, path));
+  return sheet => {
+    parts.forEach(([name, path]) => sheet.add(name, path));
+    for (const {text, x, y, right, up, angle, colour} of run.names || [])
+      sheet.write(text, [x, y], [right, -up], "center", {name: "name", angle, fill: colour});
+  };
 };
 
-const drawScan = (sheet, robot, now) => {
-  const {scans} = robot, number = scans ? last(scans.times, now) : -1;
-  if (number < 0) return;
-  const [x, y, turn] = scans.poses[number], [mx, my, mturn] = scans.mount;
+// Draws a scan with the lidar's geometry. A range below 0 has no return, and 0 is no reading.
+const drawScan = (sheet, lidar, {pose: [x, y, turn], ranges}) => {
+  const [mx, my, mturn] = lidar.mount;
   const cx = x + Math.cos(turn) * mx - Math.sin(turn) * my, cy = y + Math.sin(turn) * mx + Math.cos(turn) * my;
-  const ranges = scans.ranges[number], every = Math.max(1, Math.round(ranges.length / LOOK.beams));
+  const every = Math.max(1, Math.round(ranges.length / LOOK.beams));
   const seen = new Path2D(), rays = new Path2D(), hits = new Path2D(), size = sheet.radius("hit");
-  if (!scans.full) seen.moveTo(cx, cy);
+  if (!lidar.full) seen.moveTo(cx, cy);
   ranges.forEach((range, beam) => {
-    const angle = turn + mturn + scans.first + beam * scans.turn, length = range < 0 ? scans.reach : range;
+    const angle = turn + mturn + lidar.first + beam * lidar.turn, length = range < 0 ? lidar.reach : range;
     const end = [cx + length * Math.cos(angle), cy + length * Math.sin(angle)];
     seen.lineTo(...end);
     if (range <= 0) return;
@@ -106,34 +117,20 @@ const mixed = (one, other, share) =>
 const hue = (colour, kind, share) => share < 0.5 ? mixed(colour(`early${kind}`), colour(`own${kind}`), 2 * share)
   : mixed(colour(`own${kind}`), colour(`late${kind}`), 2 * share - 1);
 
-// Draws a track in pieces, each of one colour. The driven part is thick, the future part thin.
-const makeTrack = (run, robot, kind) => {
-  const rows = robot.poses.length - 1, whole = line(robot.poses), begin = run.times[0], span = run.times[rows] - begin || 1;
-  const cuts = Array.from({length: LOOK.pieces + 1}, (_, number) => Math.round(number * rows / LOOK.pieces));
-  const pieces = cuts.slice(1).map((to, number) => ({from: cuts[number], to,
-    path: line(robot.poses.slice(cuts[number], to + 1)), share: ((run.times[cuts[number]] + run.times[to]) / 2 - begin) / span}));
-  return (sheet, row, pose) => {
-    sheet.add("track to come", whole, sheet.colour(`own${kind}`));
-    for (const {from, to, path, share} of pieces) {
-      if (from > row) break;
-      const driven = to <= row ? path : line([...robot.poses.slice(from, row + 1), pose]);
-      sheet.add("track", driven, hue(sheet.colour, kind, share));
-    }
-  };
+// Divides `rows` steps of a track into pieces, each of one colour: the first and the last row of each.
+const pieces = rows => Array.from({length: LOOK.pieces}, (_, number) =>
+  [number, number + 1].map(cut => Math.round(cut * rows / LOOK.pieces)));
+
+// The text of the collision that a robot shows at an instant, or "".
+const metAt = (collisions, name, now) => {
+  const met = collisions.filter(([when, , , , who = name]) => who === name && when <= now + 1e-6 && now - when < MET_SECONDS);
+  return met.length ? met[met.length - 1][3] : "";
 };
 
-// Interpolates the robot's pose between two rows of the recording.
-const poseAt = (run, robot, now, row) => {
-  const from = robot.poses[row], to = robot.poses[Math.min(row + 1, robot.poses.length - 1)];
-  const span = (run.times[row + 1] ?? now) - run.times[row];
-  const share = span > 0 ? Math.min(1, Math.max(0, (now - run.times[row]) / span)) : 0;
-  return [0, 1, 2].map(axis => from[axis] + share * (to[axis] - from[axis]));
-};
-
-const drawRobot = (sheet, run, robot, kind, now, row) => {
-  const [x, y, turn] = poseAt(run, robot, now, row), own = sheet.colour(`own${kind}`);
-  if (robot.commands && now >= robot.commanded && now < run.times[run.times.length - 1]) { // draw the latest command
-    const [linear, angular] = robot.commands[row], way = [];
+const drawRobot = (sheet, run, robot, kind, state) => {
+  const [x, y, turn] = state.pose, own = sheet.colour(`own${kind}`);
+  if (state.command && state.isObeying) { // draw the way of the latest command
+    const [linear, angular] = state.command, way = [];
     for (let px = x, py = y, angle = turn, at = 0; at <= AHEAD; at += 0.05) {
       way.push([px, py]);
       px += 0.05 * linear * Math.cos(angle); py += 0.05 * linear * Math.sin(angle); angle += 0.05 * angular;
@@ -142,17 +139,16 @@ const drawRobot = (sheet, run, robot, kind, now, row) => {
   }
   const placed = points => loop(points.map(([px, py]) =>
     [x + Math.cos(turn) * px - Math.sin(turn) * py, y + Math.sin(turn) * px + Math.cos(turn) * py]));
-  const met = run.collisions.some(([when, , , , who]) => who === robot.name && when <= now + 1e-6 && now - when < MET_SECONDS);
   sheet.add("halo", disc(x, y, sheet.radius("halo")), own);
-  sheet.add("body", placed(robot.body), met ? sheet.colour("alarm") : own);
+  sheet.add("body", placed(robot.body), state.met ? sheet.colour("alarm") : own);
   sheet.add("nose", placed(robot.nose));
   if (run.robots.length > 1) sheet.write(robot.name, [x, y + reach(robot)], [0, -8], "center");
 };
 
-const drawCollisions = (sheet, run, now) => {
+const drawCollisions = (sheet, {time, collisions}) => {
   for (const name of ["collision halo", "collision"]) {
     const path = new Path2D();
-    for (const [when, x, y] of run.collisions) if (when <= now + 1e-6) cross(x, y, sheet.radius(name), path);
+    for (const [when, x, y] of collisions) if (when <= time + 1e-6) cross(x, y, sheet.radius(name), path);
     sheet.add(name, path);
   }
 };
@@ -173,18 +169,19 @@ const drawMoment = (sheet, run, now) => {
     sheet.write(moment.words, at, [18 * side, at[1] > (low + high) / 2 ? 24 : -30], side > 0 ? "left" : "right");
 };
 
-// Returns a function that draws an instant on a sheet.
-const makeScene = run => {
-  const kinds = run.robots.map((_, index) => index && 1 + (index - 1) % LOOK.others);
-  const addWorld = makeWorld(run), tracks = run.robots.map((robot, index) => makeTrack(run, robot, kinds[index]));
-  return (sheet, now, row) => {
+// Returns a function that draws an instant on a sheet. `addTrack(sheet, index, kind, instant)` draws a robot's track.
+const makeScene = (run, addTrack) => {
+  const kinds = run.robots.map((_, index) => index && 1 + (index - 1) % LOOK.others), addWorld = makeWorld(run);
+  return (sheet, instant) => {
     addWorld(sheet);
-    run.robots.forEach(robot => drawScan(sheet, robot, now));
-    run.world.movers.forEach((radius, index) =>
-      sheet.add("mover", disc(run.paths[row][2 * index], run.paths[row][2 * index + 1], radius)));
-    run.robots.forEach((robot, index) => tracks[index](sheet, row, poseAt(run, robot, now, row)));
-    run.robots.forEach((robot, index) => drawRobot(sheet, run, robot, kinds[index], now, row));
-    drawCollisions(sheet, run, now);
-    drawMoment(sheet, run, now);
+    run.robots.forEach(({scans}, index) => {
+      const {scan} = instant.robots[index];
+      if (scan) drawScan(sheet, scans, scan);
+    });
+    run.world.movers.forEach((radius, index) => sheet.add("mover", disc(...instant.movers[index], radius)));
+    kinds.forEach((kind, index) => addTrack(sheet, index, kind, instant));
+    run.robots.forEach((robot, index) => drawRobot(sheet, run, robot, kinds[index], instant.robots[index]));
+    drawCollisions(sheet, instant);
+    drawMoment(sheet, run, instant.time);
   };
 };

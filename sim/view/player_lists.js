@@ -1,4 +1,4 @@
-// The lists below the canvas: a time line for each rule, and the output of the programs.
+// The lists below the canvas: a time line for each rule, the output of the programs, and the robots' data.
 const make = (tag, attributes = {}, parent = null) => {
   const node = tag === "svg" || parent instanceof SVGElement
     ? document.createElementNS("http://www.w3.org/2000/svg", tag) : document.createElement(tag);
@@ -60,21 +60,19 @@ const makeLog = (stage, said, show) => {
 };
 
 // Shows each robot's data at an instant: its velocity, its command, and the distance of the nearest obstacle.
+const velocityText = ([linear, angular]) => `${signed(linear)} m/s, ${signed(angular)} rad/s`;
 const makeReadout = (stage, run) => {
-  const box = make("div", {class: "run-said"}, stage), velocity = ([linear, angular]) => `${signed(linear)} m/s, ${signed(angular)} rad/s`;
+  const box = make("div", {class: "run-said"}, stage);
   const rows = run.robots.map(robot => {
     const row = make("p", {}, box);
     if (run.robots.length > 1) make("strong", {text: `${robot.name}: `}, row);
-    return [robot, make("span", {}, row), make("span", {class: "run-hit"}, row)];
+    return [make("span", {}, row), make("span", {class: "run-hit"}, row)];
   });
-  return (now, row) => {
-    for (const [robot, words, hit] of rows) {
-      const ordered = robot.commands && now >= robot.commanded ? ` \u00b7 commanded ${velocity(robot.commands[row])}` : "";
-      const gap = robot.gaps[row] < 999 ? ` \u00b7 gap ${Math.max(0, robot.gaps[row]).toFixed(2)} m` : "";
-      words.textContent = `moves ${velocity(robot.velocities[row])}${ordered}${gap}`;
-      const met = run.collisions.filter(([when, , , , who = robot.name]) =>
-        who === robot.name && when <= now + 1e-6 && now - when < MET_SECONDS);
-      hit.textContent = met.length ? ` \u00b7 ${met[met.length - 1][3]}` : "";
-    }
-  };
+  return ({robots}) => robots.forEach(({velocity, command, gap, met}, index) => {
+    const [words, hit] = rows[index];
+    const ordered = command ? ` \u00b7 commanded ${velocityText(command)}` : "";
+    const distance = gap < MAX_GAP ? ` \u00b7 gap ${Math.max(0, gap).toFixed(2)} m` : "";
+    words.textContent = `moves ${velocityText(velocity)}${ordered}${distance}`;
+    hit.textContent = met ? ` \u00b7 ${met}` : "";
+  });
 };

@@ -1,12 +1,13 @@
-// The part of the world that a canvas shows: axes in metres, zoom, pan, and following a robot.
+// The part of the world that a canvas shows: axes in metres, zoom, pan, and following a robot. It handles the mouse and
+// fingers itself, and calls `changed` after a change. `draw(sheet, instant)` draws an instant.
 const EDGE = {left: 42, right: 8, top: 4, bottom: 20}; // pixels around the world, for the axes
 const MIN_SPACING = 26; // the minimum number of pixels between two lines of the grid
 const MAX_ZOOM = 20; // the maximum zoom factor
 const FOLLOWING_ZOOM = 3; // the zoom factor for following, if the whole world was shown
 
-const makeView = (stage, canvas, run, colour, changed) => {
+const makeView = (canvas, run, colour, draw, changed) => {
   const [left, low, right, high] = run.world.bounds, [innerLeft, innerLow, innerRight, innerHigh] = run.world.inside;
-  const pen = canvas.getContext("2d"), draw = makeScene(run), fingers = new Map();
+  const pen = canvas.getContext("2d"), fingers = new Map();
   let width = 0, height = 0, zoom = 1, x = (left + right) / 2, y = (low + high) / 2, followed = -1;
 
   const scale = () => zoom * width / (right - left);
@@ -56,9 +57,9 @@ const makeView = (stage, canvas, run, colour, changed) => {
     up.forEach((tick, number) => pen.fillText(label(up, number), EDGE.left - 4, place(x, tick)[1]));
   };
 
-  const show = (now, row) => {
+  const show = instant => {
     if (!width) return;
-    if (followed >= 0) { [x, y] = poseAt(run, run.robots[followed], now, row); settle(); }
+    if (followed >= 0) { [x, y] = instant.robots[followed].pose; settle(); }
     const ratio = devicePixelRatio, [ox, oy] = place(0, 0), [across, up] = axes();
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, canvas.width, canvas.height);
@@ -74,20 +75,20 @@ const makeView = (stage, canvas, run, colour, changed) => {
     for (const tick of across) { grid.moveTo(tick, low); grid.lineTo(tick, high); }
     for (const tick of up) { grid.moveTo(left, tick); grid.lineTo(right, tick); }
     sheet.add("grid", grid);
-    draw(sheet, now, row);
+    draw(sheet, instant);
     sheet.draw();
     pen.restore();
   };
-  // Uses the width of the stage, if it has one, and the height of the world, limited to that of the window.
-  const resize = () => {
+  // Uses the available width in pixels, and the height of the world, at most a share of the window's. Returns the height.
+  const resize = (available, share = 0.7) => {
     const shape = (high - low) / (right - left);
-    width = Math.min(stage.clientWidth - EDGE.left - EDGE.right, 0.7 * window.innerHeight / shape);
-    width = Math.max(0, width);
+    width = Math.max(0, Math.min(available - EDGE.left - EDGE.right, share * window.innerHeight / shape));
     height = width * shape;
     const size = [width + EDGE.left + EDGE.right, height + EDGE.top + EDGE.bottom];
     [canvas.style.width, canvas.style.height] = size.map(side => `${side}px`);
     [canvas.width, canvas.height] = size.map(side => Math.round(side * devicePixelRatio));
     settle();
+    return size[1];
   };
 
   const at = event => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
@@ -115,6 +116,5 @@ const makeView = (stage, canvas, run, colour, changed) => {
     event.preventDefault();
     zoomAt(Math.exp(-event.deltaY / 300), ...at(event));
   }, {passive: false});
-  const following = () => followed < 0 ? null : run.robots[followed].name;
-  return {show, resize, zoomAt, whole, follow, following};
+  return {show, resize, zoomAt, whole, follow, followed: () => followed};
 };
