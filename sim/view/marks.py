@@ -58,6 +58,7 @@ MARKS: Mapping[str, Mark] = {
     "hit": Mark(6.0, fill="hit", size=2.4),
     "closest": Mark(7.0, line="ink", width=1.2, dash=(2.0, 1.6)),
     "gap": Mark(7.0, line="alarm", width=1.4),
+    "name": Mark(7.2, fill="muted", size=7.5),
     "halo": Mark(7.5, fill=OWN, alpha=0.16, size=24.0),
     "body": Mark(8.0, fill=OWN, line="paper", width=1.2),
     "nose": Mark(9.0, fill="paper"),

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from sim.view.artists import set_stage
+from sim.view.marks import MARKS
+from sim.view.names import names_of
 from sim.view.shapes import margin_of
 from sim.view.theme import Theme
 from sim.world import World
@@ -20,9 +22,6 @@ HEIGHT = 5.4
 
 _LEFT, _RIGHT, _BOTTOM, _TOP = 0.42, 0.16, 0.34, 0.60
 """The margins around the axes in inches."""
-
-MIN_RADIUS_FOR_NAME = 0.5
-"""The minimum radius of a pillar whose name is written inside it, in metres."""
 
 
 def new_axes(world: World, theme: Theme) -> Axes:
@@ -65,56 +64,19 @@ def add_scale(ax: Axes, colours: Any, limits: tuple[float, float], unit: str, la
 
 
 def write_names(ax: Axes, world: World, theme: Theme) -> None:
-    """Write names: along walls, inside furniture and large pillars, and beside other pillars and goals."""
-    style: dict[str, Any] = {"fontsize": 7.5, "color": theme.muted, "zorder": 7, "annotation_clip": False}
-    for name in dict.fromkeys(filter(None, world.segment_names)):
-        rows = world.segments[[index for index, other in enumerate(world.segment_names) if other == name]]
-        if _is_closed(rows):
-            centre = rows.reshape(-1, 2).mean(axis=0)
-            is_vertical = np.ptp(rows[:, 0::2]) < np.ptp(rows[:, 1::2])
-            ax.annotate(name, tuple(centre), ha="center", va="center", rotation=90 if is_vertical else 0, **style)
-            continue
-        wall = rows[int(np.argmax(np.hypot(rows[:, 2] - rows[:, 0], rows[:, 3] - rows[:, 1])))]
-        _name_wall(ax, name, wall, world, style)
-    for (x, y, radius), name in zip(world.circles.tolist(), world.circle_names, strict=True):
-        if radius >= MIN_RADIUS_FOR_NAME:
-            ax.annotate(name, (x, y), ha="center", va="center", **style)
-        elif name:
-            ax.annotate(name, (x, y + radius), (0, 4), textcoords="offset points", ha="center", va="bottom", **style)
-    for goal in world.goals:
-        spot = (goal.x, goal.y - goal.radius)
-        style_goal: dict[str, Any] = {**style, "color": theme.goal}
-        ax.annotate(goal.name, spot, (0, -4), textcoords="offset points", ha="center", va="top", **style_goal)
-
-
-def _name_wall(ax: Axes, name: str, wall: npt.NDArray[Any], world: World, style: dict[str, Any]) -> None:
-    first, second = wall[:2], wall[2:]
-    along = second - first
-    if along[0] < 0 or (along[0] == 0 and along[1] < 0):
-        along = -along
-    length = float(np.hypot(*along))
-    if length == 0.0:
-        return
-    centre = (first + second) / 2
-    normal = np.array([-along[1], along[0]]) / length
-    left, low, right, high = world.bounds
-    middle = np.array([(left + right) / 2, (low + high) / 2])
-    inward = normal if normal @ (middle - centre) >= 0 else -normal
-    is_outer = centre[0] in (left, right) or centre[1] in (low, high)
-    angle = float(np.degrees(np.arctan2(along[1], along[0])))
-    ax.annotate(
-        name,
-        tuple(centre),
-        tuple(-8.0 * inward if is_outer else 7.5 * inward),
-        textcoords="offset points",
-        ha="center",
-        va="center",
-        rotation=angle,
-        rotation_mode="anchor",
-        **style,
-    )
-
-
-def _is_closed(rows: npt.NDArray[Any]) -> bool:
-    """Return whether the segments, in their order, form a closed outline, such as that of a piece of furniture."""
-    return len(rows) > 2 and bool(np.allclose(rows[:, 2:], np.roll(rows[:, :2], -1, axis=0)))
+    """Write the names of walls, furniture, pillars and goals."""
+    for name in names_of(world):
+        ax.annotate(
+            name.text,
+            (name.x, name.y),
+            (name.right, name.up),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            rotation=math.degrees(name.angle),
+            rotation_mode="anchor",
+            fontsize=MARKS["name"].size,
+            color=getattr(theme, name.colour),
+            zorder=MARKS["name"].layer,
+            annotation_clip=False,
+        )
