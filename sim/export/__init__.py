@@ -19,7 +19,7 @@ __all__ = ["ExportError", "export", "to_gif", "to_html", "to_mcap", "to_mp4"]
 
 
 def to_gif(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: float = 10.0) -> Path:
-    """Write an animated GIF of the live view's frames; return the path.
+    """Write an animated GIF of the frames of a run; return the path.
 
     Args:
         recording: the run.
@@ -36,7 +36,7 @@ def to_gif(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: f
 
 
 def to_mp4(recording: Recording, path: str | Path, *, speed: float = 1.0, fps: float = 25.0) -> Path:
-    """Write the live view's frames as an MP4; return the path.
+    """Write the frames of a run as an MP4; return the path.
 
     Args:
         recording: the run.

@@ -1,4 +1,4 @@
-"""Draws the live view's frames of a recording, for a GIF or a video."""
+"""Draws the frames of a recording, for a GIF or a video."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writes an animated GIF of the live view's frames, with one palette for all frames."""
+"""Writes an animated GIF of the frames of a run, with one palette for all frames."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writes an MP4 of the live view's frames, which the program ffmpeg encodes."""
+"""Writes an MP4 of the frames of a run, which the program ffmpeg encodes."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def __getattr__(name: str) -> Any:
-    """Import the live view, and ipywidgets with it, only when it is used."""
+    """Import the live view, and anywidget with it, only when it is used."""
     if name in ("live", "LiveView"):
         from importlib import import_module
 

@@ -47,7 +47,7 @@ def show(
     world, colours = simulation.world, theme_named(theme)
     with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
         ax = ax or new_axes(world, colours)
-        prepare(ax, world, colours, title or _heading(world), _size(world))
+        prepare(ax, world, colours, title or title_of(world), size_of(world))
         _draw_world(ax, simulation, 0 if state is None else state.time_ns, colours, names, state is None)
         if state is not None:
             for index, robot in enumerate(state.robots):
@@ -97,7 +97,7 @@ def plot(
     shown_row = len(recording) - 1 if row is None else row
     with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]
         ax = ax or new_axes(world, scheme)
-        prepare(ax, world, scheme, title or _heading(world), _summary(recording, indices, nearest=len(indices) == 1))
+        prepare(ax, world, scheme, title or title_of(world), _summary(recording, indices, nearest=len(indices) == 1))
         _draw_world(ax, simulation, int(recording.times_ns[shown_row]), scheme, names)
         for index in reversed(indices):
             _draw_robot_run(ax, recording, index, colour, scheme, shown_row, scan=row is None or index == indices[0])
@@ -110,7 +110,7 @@ def plot(
 def heading(recording: Recording) -> tuple[str, str]:
     """Return the title of a run, and its summary: the duration, the distance and the collisions."""
     indices = _robot_indices(recording.simulation, None)
-    return _heading(recording.simulation.world), _summary(recording, indices, nearest=len(indices) == 1)
+    return title_of(recording.simulation.world), _summary(recording, indices, nearest=len(indices) == 1)
 
 
 def _draw_world(ax: Axes, simulation: Simulation, time_ns: int, theme: Theme, names: bool, starts: bool = True) -> None:
@@ -181,11 +181,13 @@ def _figure(ax: Axes) -> Figure:
     return figure  # type: ignore[no-any-return]
 
 
-def _heading(world: World) -> str:
+def title_of(world: World) -> str:
+    """Return the name of a world, with a capital letter."""
     return world.name[:1].upper() + world.name[1:]
 
 
-def _size(world: World) -> str:
+def size_of(world: World) -> str:
+    """Return the width and the height of a world."""
     left, low, right, high = world.bounds
     return f"{right - left:.1f} × {high - low:.1f} m"  # noqa: RUF001 (a true multiplication sign)
 
@@ -213,7 +215,7 @@ def _run_facts(recording: Recording, index: int, nearest: bool) -> list[str]:
 
 
 def _world_alt(world: World, state: State | None) -> str:
-    text = f"Map of the world “{world.name}”, {_size(world)}, with {len(world.segments)} walls"
+    text = f"Map of the world “{world.name}”, {size_of(world)}, with {len(world.segments)} walls"
     if len(world.circles):
         text += f", {len(world.circles)} pillars"
     if world.movers:

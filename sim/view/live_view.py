@@ -1,8 +1,8 @@
-"""The live view for JupyterLab: an image, a row of buttons, and a task in the kernel's event loop.
+"""The live view for JupyterLab: a widget that draws frames, and a task in the kernel's event loop.
 
 It is a task and not a thread, so that the student's callback runs in the same thread as the cells, and never while one
-of them runs. So variables do not change during a cell, and no lock is needed. While a long cell runs, both the picture
-and simulated time wait, so that nothing is missed. The task returns to the loop after each frame.
+of them runs. So variables do not change during a cell, and no lock is needed. While a long cell runs, simulated time
+waits, so that nothing is missed. The task returns to the loop after each frame.
 
 Under a grader (the environment variable AUTOGRADER_GRADING is set) `live` starts nothing and returns a picture.
 """
@@ -16,7 +16,7 @@ from collections import deque
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import ipywidgets as widgets
+import anywidget
 
 from sim.grading import grading
 from sim.pose import Command
@@ -24,9 +24,9 @@ from sim.recording import Recording
 from sim.simulation import Simulation, start
 from sim.view.controls import Controls
 from sim.view.figures import plot, show
+from sim.view.live_data import describe, frame_data
 from sim.view.picture import Picture
 from sim.view.player import Player
-from sim.view.renderer import Renderer
 from sim.view.session import Controller, Session, Source
 from sim.view.theme import Theme, theme_named
 from sim.view.watch import Watch
@@ -85,18 +85,16 @@ class LiveView:
 
     def __init__(self, source: Source, theme: Theme, *, speed: float = 1.0, names: bool = False) -> None:
         self._source = source
-        self._renderer = Renderer(source.simulation, theme, names=names)
         self._speed = speed
         self._now_ns = 0
         self._task: asyncio.Task[None] | None = None
         self._frame_times: deque[float] = deque(maxlen=60)
-        self._controls = Controls(self, source, speed, self._renderer.width)
-        self._render()
+        self._controls = Controls(self, describe(source, theme, names=names), frame_data(source, 0), speed)
 
     @property
-    def widget(self) -> widgets.Widget:
-        """The ipywidgets box with everything in it."""
-        return self._controls.box
+    def widget(self) -> anywidget.AnyWidget:
+        """The widget with everything in it."""
+        return self._controls
 
     @property
     def playing(self) -> bool:
@@ -127,12 +125,12 @@ class LiveView:
         try:
             loop = asyncio.get_running_loop()
         except RuntimeError:  # in a script without a loop, no second frame can be shown
-            self._controls.set_playing(False)
+            self._controls.playing = False
             return
         self._frame_times.clear()
         self._source.set_paused(False)
         self._task = loop.create_task(self._run())
-        self._controls.set_playing(True)
+        self._controls.playing = True
 
     def pause(self) -> None:
         """Stop time."""
@@ -142,7 +140,7 @@ class LiveView:
         self._source.set_paused(True)
         if not self._source.paced:  # the source has advanced until now
             self._now_ns = self._source.end_ns
-        self._controls.set_playing(False)
+        self._controls.playing = False
         self._render()
 
     def step(self, seconds: float = 0.1) -> None:
@@ -159,7 +157,7 @@ class LiveView:
         """Return to the start of the run, and drop its recording."""
         self.pause()
         self._source.reset()
-        self._controls.clear_error()
+        self._controls.error = ""
         self._now_ns = 0
         self._render()
 
@@ -175,7 +173,7 @@ class LiveView:
 
     def set_speed(self, speed: float) -> None:
         """Set the number of simulated seconds per second."""
-        self._speed = speed
+        self._speed = self._controls.speed = speed
 
     async def _run(self) -> None:
         period, last = 1.0 / FPS, time.perf_counter()
@@ -185,7 +183,7 @@ class LiveView:
             elapsed, last = min(now - last, MAX_FRAME_SECONDS), now
             if not self._advance(round(elapsed * self._speed * 1e9)):
                 self._task = None
-                self._controls.set_playing(False)
+                self._controls.playing = False
                 return
 
     def _advance(self, duration_ns: int) -> bool:
@@ -195,18 +193,18 @@ class LiveView:
         except Exception as error:  # the student's callback may raise any exception, which is shown to the student
             self._now_ns = self._source.end_ns
             self._render()
-            self._controls.show_error(_callback_traceback(error))
+            self._controls.error = _callback_traceback(error)
             return False
         self._render()
         return self._source.growing or self._now_ns < self._source.end_ns
 
     def _render(self) -> None:
-        frame, trail = self._source.at(self._now_ns), self._source.trail(self._now_ns)
-        self._controls.show(self._renderer.jpeg(frame, trail), self._now_ns / 1e9, self._source.end_ns / 1e9)
+        self._controls.frame = frame_data(self._source, self._now_ns)
         self._frame_times.append(time.perf_counter())
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
-        return self._controls.box._repr_mimebundle_(**kwargs)
+        bundle: Any = self._controls._repr_mimebundle_(**kwargs)
+        return {**bundle[0], "text/plain": repr(self)}, bundle[1]
 
     def __repr__(self) -> str:
         world = self._source.simulation.world.name

@@ -1,12 +1,10 @@
-"""Draws frames for the live view by blitting: the world, and beside it the scan in the robot's frame.
+"""Draws frames for a GIF or a video by blitting: the world, and beside it the scan in the robot's frame.
 
-The walls are drawn once, and their pixels are stored. Each frame restores them, draws only what moves, and encodes the
-canvas. A frame takes a few milliseconds, most of which is encoding.
+The walls are drawn once, and their pixels are stored. Each frame restores them and draws only what moves.
 """
 
 from __future__ import annotations
 
-import io
 import math
 from itertools import pairwise
 from typing import Any
@@ -30,7 +28,6 @@ from sim.view.artists import area, line, symbol
 from sim.view.marks import MARKS, PIECES
 from sim.view.session import Frame
 from sim.view.shapes import Floats, beam_ends, body_outline, is_full_turn, margin_of, movers_at, nose_outline, place
-from sim.view.stage import write_names
 from sim.view.theme import STYLE, Theme
 from sim.world import World
 
@@ -47,7 +44,7 @@ _LEFT, _BETWEEN, _RIGHT, _BOTTOM, _TOP = 0.44, 0.25, 0.11, 0.34, 0.38
 class Renderer:
     """Draws frames of one simulation."""
 
-    def __init__(self, simulation: Simulation, theme: Theme, dpi: int = 100, *, names: bool = False) -> None:
+    def __init__(self, simulation: Simulation, theme: Theme, dpi: int = 100) -> None:
         self._simulation = simulation
         self._theme = theme
         self._lidar = simulation.robots[0].lidar
@@ -59,8 +56,6 @@ class Renderer:
             artists.set_stage(self._world, simulation.world, theme)
             artists.draw_walls(self._world, simulation.world, theme)
             artists.draw_places(self._world, simulation.world, theme, radius=simulation.robots[0].radius)
-            if names:
-                write_names(self._world, simulation.world, theme)
             self._local_robot = _prepare_scan_axes(self._scan_axes, simulation, theme)
             self._moving_artists = self._add_moving_artists()
             self._texts: tuple[str, str, bool] | None = None
@@ -71,28 +66,8 @@ class Renderer:
             canvas.draw()
             self._background = canvas.copy_from_bbox(figure.bbox)
 
-    @property
-    def width(self) -> int:
-        """The width of a frame, in pixels."""
-        return int(self._canvas.get_width_height()[0])
-
     def draw(self, frame: Frame, trail: Floats | None = None) -> Image.Image:
         """Return the frame as an RGB image. `trail` is the first robot's track, (K, 2) in metres."""
-        return self._draw_canvas(frame, trail, "RGBA").convert("RGB")
-
-    def jpeg(self, frame: Frame, trail: Floats | None = None, quality: int = 84) -> bytes:
-        """Return the frame as JPEG, with colours at full resolution to keep thin lines sharp."""
-        stream = io.BytesIO()
-        self._draw_canvas(frame, trail, "RGBX").save(stream, "JPEG", quality=quality, subsampling=0)
-        return stream.getvalue()
-
-    def png(self, frame: Frame, trail: Floats | None = None) -> bytes:
-        """Return the frame as PNG."""
-        stream = io.BytesIO()
-        self.draw(frame, trail).save(stream, "PNG", compress_level=1)
-        return stream.getvalue()
-
-    def _draw_canvas(self, frame: Frame, trail: Floats | None, mode: str) -> Image.Image:
         self._canvas.restore_region(self._background)
         self._update(frame, trail)
         for artist in self._moving_artists:
@@ -100,7 +75,7 @@ class Renderer:
                 artist.axes.draw_artist(artist)
         self._write(frame)
         width, height = self._canvas.get_width_height()
-        return Image.frombuffer(mode, (width, height), self._canvas.buffer_rgba(), "raw", mode, 0, 1)
+        return Image.frombuffer("RGBA", (width, height), self._canvas.buffer_rgba(), "raw", "RGBA", 0, 1).convert("RGB")
 
     def _write(self, frame: Frame) -> None:
         """Write the time and the speed above the axes. Text is slow to draw, so its pixels are reused."""

@@ -18,8 +18,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sim.lidar import LidarSpec
 from sim.log import Line, shorten
 from sim.recording import Recording
+from sim.robot import RobotSpec
+from sim.state import Event
 from sim.view.figures import heading
 from sim.view.shapes import (
     Moment,
@@ -87,7 +90,7 @@ def encode(
             "title": title,
             "summary": summary,
             "moment": None if moment is None else _encode_moment(moment),
-            "world": _encode_world(recording.simulation.world),
+            "world": encode_world(recording.simulation.world),
             "margins": [_encode_margin(margin, max_rows) for margin in margins],
             "said": _encode_log(recording.log_lines),
             **_encode_run(recording, max_rows, max_beams),
@@ -126,7 +129,8 @@ def _encode_moment(moment: Moment) -> dict[str, Any]:
     }
 
 
-def _encode_world(world: World) -> dict[str, Any]:
+def encode_world(world: World) -> dict[str, Any]:
+    """Return a world for the page. Lengths are metres."""
     room, solid = outlines(world)
     left, low, right, high = world.bounds
     margin = margin_of(world)
@@ -153,9 +157,7 @@ def _encode_run(recording: Recording, max_rows: int, max_beams: int) -> dict[str
         "paths": pack(paths, MILLI) if simulation.world.movers else None,
         "robots": [
             {
-                "name": spec.name,
-                "body": np.round(body_outline(spec), 3).tolist(),
-                "nose": np.round(nose_outline(spec), 3).tolist(),
+                **encode_shape(spec),
                 "poses": pack(_unwrap_angles(recording.poses[rows, index]), MILLI),
                 "velocities": pack(recording.velocities[rows, index], MILLI),
                 "commands": _encode_commands(recording, index, rows),
@@ -164,12 +166,41 @@ def _encode_run(recording: Recording, max_rows: int, max_beams: int) -> dict[str
             }
             for index, spec in enumerate(simulation.robots)
         ],
-        "collisions": [
-            [round(event.time_ns / 1e9, 3), round(event.x, 3), round(event.y, 3), event.what, event.robot]
-            for event in recording.events[:max_rows]
-            if event.kind == "collision"
-        ],
+        "collisions": [encode_collision(event) for event in recording.events[:max_rows] if event.kind == "collision"],
     }
+
+
+def encode_shape(spec: RobotSpec) -> dict[str, Any]:
+    """Return the name and the outlines of a robot, in metres in its frame."""
+    body, nose = body_outline(spec), nose_outline(spec)
+    return {"name": spec.name, "body": np.round(body, 3).tolist(), "nose": np.round(nose, 3).tolist()}
+
+
+def encode_collision(event: Event) -> list[Any]:
+    """Return the time in seconds of a collision, its place in metres, the obstacle, and the robot's name."""
+    return [round(event.time_ns / 1e9, 3), round(event.x, 3), round(event.y, 3), event.what, event.robot]
+
+
+def encode_lidar(lidar: LidarSpec, beam_step: int) -> dict[str, Any]:
+    """Return the geometry of a lidar of which every `beam_step`-th beam is shown, in metres and radians."""
+    return {
+        "mount": [round(number, 4) for number in (lidar.mount.x, lidar.mount.y, lidar.mount.theta)],
+        "first": lidar.angle_min,
+        "turn": lidar.angle_increment * beam_step,
+        "reach": lidar.range_max,
+        "full": is_full_turn(lidar),
+    }
+
+
+def beam_step_of(lidar: LidarSpec, max_beams: int) -> int:
+    """Return the distance between two shown beams, so that at most `max_beams` are shown."""
+    return max(1, math.ceil(lidar.beams / max_beams))
+
+
+def range_codes(ranges: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """Return ranges in metres with `NO_RETURN` and `NO_READING` instead of numbers that are not finite."""
+    values = ranges.astype(np.float64)
+    return np.where(values == math.inf, NO_RETURN, np.where(np.isfinite(values), values, NO_READING))
 
 
 def _selected_rows(count: int, limit: int) -> npt.NDArray[np.int64]:
@@ -197,18 +228,12 @@ def _encode_scans(recording: Recording, index: int, max_rows: int, max_beams: in
     lidar, log = recording.simulation.robots[index].lidar, recording.scans[index]
     if lidar is None or not len(log.rows):
         return None
-    numbers, beam_step = _selected_rows(len(log.rows), max_rows), max(1, math.ceil(lidar.beams / max_beams))
-    ranges = log.ranges[numbers, ::beam_step].astype(np.float64)
-    codes = np.where(ranges == math.inf, NO_RETURN, np.where(np.isfinite(ranges), ranges, NO_READING))
+    numbers, beam_step = _selected_rows(len(log.rows), max_rows), beam_step_of(lidar, max_beams)
     return {
         "times": pack(recording.times[log.rows[numbers]], MILLI),
         "poses": pack(recording.poses[log.rows[numbers], index], MILLI),
-        "mount": [round(number, 4) for number in (lidar.mount.x, lidar.mount.y, lidar.mount.theta)],
-        "first": lidar.angle_min,
-        "turn": lidar.angle_increment * beam_step,
-        "reach": lidar.range_max,
-        "full": is_full_turn(lidar),
-        "ranges": pack(codes, CENTIMETRE),
+        **encode_lidar(lidar, beam_step),
+        "ranges": pack(range_codes(log.ranges[numbers, ::beam_step]), CENTIMETRE),
     }
 
 

@@ -6,7 +6,7 @@ It uses no widget and no clock: the caller of `advance` determines the simulated
 from __future__ import annotations
 
 import bisect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -17,7 +17,7 @@ from sim.lidar import Scan
 from sim.pose import Command, Pose
 from sim.rates import due
 from sim.recording import Recorder, Recording
-from sim.simulation import Simulation, State, observe, start, step
+from sim.simulation import Event, Simulation, State, observe, start, step
 
 Controller = Callable[[Scan], Command | None]
 """A student's callback, which is called with each new scan and returns the next command, or None to keep the last."""
@@ -27,7 +27,7 @@ MAX_NS = 1_800_000_000_000
 """The maximum duration of a live run: half an hour of simulated time."""
 
 TRAIL = 1500
-"""The approximate maximum number of points of a track in a frame."""
+"""The approximate maximum number of points of a robot's track in a frame."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,11 @@ class Source(Protocol):
     def at(self, time_ns: int) -> Frame:
         """Return the last frame that is not later than `time_ns` (the first one if all are later)."""
 
-    def trail(self, time_ns: int) -> NDArray[np.float64]:
-        """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
+    def tracks(self, time_ns: int) -> NDArray[np.float64]:
+        """Return the tracks of the robots up to `time_ns`, (K, robots, 2) in metres."""
+
+    def collisions(self, time_ns: int) -> list[Event]:
+        """Return the collisions up to `time_ns`, in the order of their times."""
 
     def advance(self, until_ns: int) -> int:
         """Run until `until_ns`; return the instant to show."""
@@ -97,7 +100,7 @@ class Session:
         state = start(self.simulation)
         self._recorder = Recorder(self.simulation, state)
         self._times: list[int] = []
-        self._track: list[tuple[float, float]] = []
+        self._collisions: list[Event] = []
         self.frames: list[Frame] = []
         self.automatic = self.controller is not None
         self.command = Command()
@@ -122,10 +125,13 @@ class Session:
         """Return the last frame that is not later than `time_ns` (the first one if all are later)."""
         return self.frames[max(0, bisect.bisect_right(self._times, time_ns) - 1)]
 
-    def trail(self, time_ns: int) -> NDArray[np.float64]:
-        """Return the track of the first robot up to `time_ns`, (K, 2) in metres."""
-        count = bisect.bisect_right(self._times, time_ns)
-        return np.array(self._track[: count : 1 + count // TRAIL], dtype=np.float64).reshape(-1, 2)
+    def tracks(self, time_ns: int) -> NDArray[np.float64]:
+        """Return the tracks of the robots up to `time_ns`, (K, robots, 2) in metres."""
+        return track_points(self.frames, bisect.bisect_right(self._times, time_ns))
+
+    def collisions(self, time_ns: int) -> list[Event]:
+        """Return the collisions up to `time_ns`, in the order of their times."""
+        return [event for event in self._collisions if event.time_ns <= time_ns]
 
     def drive(self, command: Command | None) -> None:
         """Drive the first robot manually from the next tick on. None returns control to the controller."""
@@ -167,7 +173,18 @@ class Session:
                     newest_scans[index] = (scan, state.robots[index].pose)
         self.frames.append(Frame(state, tuple(newest_scans)))
         self._times.append(state.time_ns)
-        self._track.append((state.robots[0].pose.x, state.robots[0].pose.y))
+        self._collisions += collisions_in(state)
+
+
+def track_points(frames: Sequence[Frame], count: int) -> NDArray[np.float64]:
+    """Return the robots' positions in some of the first `count` frames, (K, robots, 2) in metres."""
+    robots = (frame.state.robots for frame in frames[: count : 1 + count // TRAIL])
+    return np.array([[(robot.pose.x, robot.pose.y) for robot in row] for row in robots], dtype=np.float64)
+
+
+def collisions_in(state: State) -> list[Event]:
+    """Return the collisions of the step that led to a state."""
+    return [event for event in state.events if event.kind == "collision"]
 
 
 def _is_new(frame: Frame) -> bool:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from sim.pose import Command
 from sim.recording import Recorder, Recording
-from sim.view.session import MAX_NS, TRAIL, Frame
+from sim.simulation import Event
+from sim.view.session import MAX_NS, Frame, collisions_in, track_points
 
 if TYPE_CHECKING:
     from sim.bridge.background import Bridge
@@ -43,11 +44,14 @@ class Watch:
         """Return the last frame that is not later than `time_ns`."""
         return self._frames[max(0, bisect.bisect_right(self._times, time_ns) - 1)]
 
-    def trail(self, time_ns: int) -> NDArray[np.float64]:
-        """Return the track of the first robot up to `time_ns`, (K, 2) in metres, with at least its first position."""
-        count = max(1, bisect.bisect_right(self._times, time_ns))  # the bridge may have run before the first frame
-        places = [frame.state.robots[0].pose for frame in self._frames[: count : 1 + count // TRAIL]]
-        return np.array([(pose.x, pose.y) for pose in places])
+    def tracks(self, time_ns: int) -> NDArray[np.float64]:
+        """Return the tracks of the robots up to `time_ns`, (K, robots, 2) in metres, with at least one position."""
+        # The bridge may have run before the first frame.
+        return track_points(self._frames, max(1, bisect.bisect_right(self._times, time_ns)))
+
+    def collisions(self, time_ns: int) -> list[Event]:
+        """Return the collisions up to `time_ns` in the frames. Those between two frames are missing."""
+        return [event for event in self._collisions if event.time_ns <= time_ns]
 
     def advance(self, until_ns: int) -> int:
         """Read a frame from the bridge; return its time, which is the instant to show.
@@ -89,6 +93,7 @@ class Watch:
             self._frames.append(frame)
             self._times.append(frame.state.time_ns)
             self._recorder.append(frame.state)
+            self._collisions += collisions_in(frame.state)
 
     def _read_frame(self) -> Frame:
         driver = self._bridge.driver
@@ -98,5 +103,6 @@ class Watch:
     def _clear(self) -> None:
         frame = self._read_frame()
         self._frames = [frame]
+        self._collisions = collisions_in(frame.state)
         self._times = [frame.state.time_ns]
         self._recorder = Recorder(self.simulation, frame.state)

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import io
-import time
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
-from PIL import Image
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.canvas import KEEP_TIMES, missing
+from sim.view import LIGHT
+from tests.browser.canvas import KEEP_TIMES, count, missing
 from tests.browser.jupyter import PATIENCE, Lab, lab
-from tests.browser.looks import DRAWN, Screenshots
+from tests.browser.looks import DRAWN, RULES, Screenshots, looks
 
 __all__ = ["lab"]
 
@@ -49,77 +46,225 @@ DriveReport(recording, "", ())
 """
 
 
-def pixels(image: Locator) -> Any:
-    """Return the part of the live image that shows the world, without the clock above it, as (H, W, 3) numbers."""
-    picture = np.asarray(Image.open(io.BytesIO(image.screenshot())).convert("RGB"), dtype=np.int16)
-    height, width, _ = picture.shape
-    return picture[int(0.1 * height) :, : int(0.62 * width)]
+TWO = """
+from sim import Command, RobotSpec, Simulation, load_world
+from sim.view import live
+world = load_world({world!r})
+view = live(Simulation(world, (RobotSpec("ann"), RobotSpec("bob"))), theme={theme!r}, play=False)
+view
+"""
 
 
-def changed_pixels(before: Any, after: Any) -> int:
-    """Return how many pixels have clearly changed."""
-    return int((np.abs(before - after).max(axis=2) > 60).sum())
+def picture(canvas: Locator) -> str:
+    """Return the picture on a canvas, as a data URL, after the page has drawn what it received."""
+    canvas.page.evaluate(DRAWN)
+    return str(canvas.evaluate("canvas => canvas.toDataURL()"))
 
 
-def wait_until_moved(image: Locator, before: Any, least: int = 40) -> int:
-    """Wait until the world's picture differs from `before`; return the number of changed pixels."""
-    deadline, difference = time.monotonic() + PATIENCE, 0
-    while time.monotonic() < deadline:
-        difference = changed_pixels(before, pixels(image))
-        if difference >= least:
-            return difference
-    pytest.fail(f"the picture did not change: {difference} pixels")
-
-
-def wait_until_still(page: Page, image: Locator) -> None:
-    """Wait until the image has been the same five times in succession."""
-    page.wait_for_function(
-        """image => {
-            image.looks = image.src === image.last ? (image.looks || 0) + 1 : 0;
-            image.last = image.src;
-            return image.looks >= 5;
-        }""",
-        arg=image.element_handle(),
-        polling=200,
+def wait_until_moved(canvas: Locator, before: str) -> None:
+    """Wait until the picture on a canvas differs from `before`."""
+    canvas.page.wait_for_function(
+        "([canvas, before]) => canvas.toDataURL() !== before",
+        arg=[canvas.element_handle(), before],
         timeout=PATIENCE * 1000,
     )
 
 
+def open_view(page: Page, lab: Lab, name: str, cells: list[str]) -> Locator:
+    """Run the cells of a notebook, of which one shows a live view; return the view."""
+    lab.open(page, name, cells)
+    view = page.locator(".run-player.run-ready")
+    expect(view.locator("canvas").first).to_be_visible(timeout=PATIENCE * 1000)
+    view.locator("canvas").first.scroll_into_view_if_needed()
+    return view
+
+
+@pytest.fixture
+def two_robots(page: Page, lab: Lab, request: pytest.FixtureRequest) -> Locator:
+    """A paused live view of two robots without a callback, in a kernel of its own. The notebook has the focus."""
+    world = str(ROOT / "assets/worlds/lab.yaml")
+    view = open_view(page, lab, f"{request.node.name}.ipynb", [TWO.format(world=world, theme="light")])
+    page.locator(".jp-Cell .jp-InputPrompt").first.click()  # command mode, in which the notebook has keys of its own
+    view.locator("canvas").first.scroll_into_view_if_needed()
+    return view
+
+
 def test_the_robot_moves_pauses_and_follows_the_pad(page: Page, lab: Lab, screenshots: Screenshots) -> None:
-    lab.open(page, "drive.ipynb", [DRIVE.format(world=str(ROOT / "assets/worlds/lab.yaml"))])
-    image = page.locator(".jp-OutputArea-output img").first
-    expect(image).to_be_visible(timeout=PATIENCE * 1000)
-    wait_until_moved(image, pixels(image))
+    view = open_view(page, lab, "drive.ipynb", [DRIVE.format(world=str(ROOT / "assets/worlds/lab.yaml"))])
+    canvas, clock = view.locator("canvas").first, view.locator("output").first
+    wait_until_moved(canvas, picture(canvas))
+    expect(view.get_by_text("your code drives")).to_be_visible()
     page.screenshot(path=screenshots.folder / "live-view-playing.png")
 
-    page.get_by_title("Pause", exact=True).click()
-    expect(page.get_by_title("Play", exact=True)).to_be_visible(timeout=PATIENCE * 1000)
-    wait_until_still(page, image)
-    paused = pixels(image)
-    assert changed_pixels(paused, pixels(image)) == 0
+    view.get_by_role("button", name="Pause").click()
+    expect(view.get_by_role("button", name="Play")).to_be_visible(timeout=PATIENCE * 1000)
+    paused = picture(canvas)
+    assert picture(canvas) == paused
 
-    page.get_by_title("Forward", exact=True).click()
-    expect(page.get_by_text("+0.22 m/s +0.00 rad/s")).to_be_visible(timeout=PATIENCE * 1000)
+    view.get_by_role("button", name="Forward").click()
+    expect(view.get_by_text("+0.22 m/s +0.00 rad/s").first).to_be_visible(timeout=PATIENCE * 1000)
     for _ in range(5):
-        page.get_by_title("One step of 0.1 s").click()
-    wait_until_moved(image, paused, least=10)
+        view.get_by_role("button", name="Step by 0.1 s").click()
+    wait_until_moved(canvas, paused)
     page.screenshot(path=screenshots.folder / "live-view-pad.png")
 
-    page.get_by_title("Back to the start").click()
-    wait_until_moved(image, paused)
-    wait_until_still(page, image)
-    start = pixels(image)
-    page.get_by_title("Play", exact=True).click()
-    wait_until_moved(image, start)
+    view.get_by_role("button", name="Reset to the start").click()
+    expect(clock).to_have_text("0.00 s", timeout=PATIENCE * 1000)
+    start = picture(canvas)
+    view.get_by_role("button", name="Play").click()
+    wait_until_moved(canvas, start)
+    view.get_by_label("Time in seconds").fill("0")
+    expect(clock).to_have_text("0.00 s", timeout=PATIENCE * 1000)
+    expect(view.get_by_role("button", name="Play")).to_be_visible()
+
+
+def test_keys_play_and_drive_while_the_mouse_is_over_the_view(page: Page, two_robots: Locator) -> None:
+    clock, lines = two_robots.locator("output").first, two_robots.locator(".run-said p")
+    cells = page.locator(".jp-Notebook .jp-Cell").count()
+    two_robots.locator("canvas").first.hover()
+    page.keyboard.press("Space")
+    expect(two_robots.get_by_role("button", name="Pause")).to_be_visible(timeout=PATIENCE * 1000)
+    for key, motion in (
+        ("ArrowUp", "moves +0.22 m/s, +0.00 rad/s"),
+        ("ArrowLeft", "moves +0.00 m/s, +0.90 rad/s"),
+        ("ArrowRight", "moves +0.00 m/s, \u22120.90 rad/s"),
+        ("ArrowDown", "moves \u22120.22 m/s, +0.00 rad/s"),
+        ("s", "moves +0.00 m/s, +0.00 rad/s"),
+    ):
+        page.keyboard.press(key)
+        expect(lines.first).to_contain_text(motion, timeout=PATIENCE * 1000)
+    page.keyboard.press("Space")
+    expect(two_robots.get_by_role("button", name="Play")).to_be_visible(timeout=PATIENCE * 1000)
+    time = float(clock.inner_text().removesuffix(" s"))
+    page.keyboard.press(".")
+    expect(clock).to_have_text(f"{time + 0.1:.2f} s", timeout=PATIENCE * 1000)
+    expect(page.locator(".jp-Notebook .jp-Cell")).to_have_count(cells)
+
+
+def test_keys_belong_to_the_notebook_while_the_mouse_is_elsewhere(page: Page, two_robots: Locator) -> None:
+    driver, editor = two_robots.locator(".run-driver"), page.locator(".cm-content").first
+    page.locator(".jp-Cell .jp-InputPrompt").first.hover()
+    page.keyboard.press("b")  # adds a cell below
+    expect(page.locator(".jp-Notebook .jp-Cell")).to_have_count(2)
+    page.keyboard.press("ArrowUp")
+    editor.click()
+    two_robots.locator("canvas").first.hover()
+    page.keyboard.press("Home")
+    page.keyboard.type("f s ")
+    expect(editor).to_contain_text("f s ")
+    expect(two_robots.get_by_role("button", name="Follow")).to_have_attribute("aria-pressed", "false")
+    expect(driver).to_have_text("ann: drive with the arrows")
+
+
+def test_the_view_zooms_and_moves_by_key_wheel_and_drag(page: Page, two_robots: Locator) -> None:
+    canvas = two_robots.locator("canvas").first
+    whole = picture(canvas)
+    canvas.hover()
+    page.keyboard.press("+")
+    zoomed = picture(canvas)
+    assert zoomed != whole
+    box = canvas.bounding_box()
+    assert box is not None
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2 + 60, box["y"] + box["height"] / 2 + 40)
+    page.mouse.up()
+    assert picture(canvas) not in (whole, zoomed)
+    page.keyboard.press("0")
+    assert picture(canvas) == whole
+    page.keyboard.down("Control")
+    page.mouse.wheel(0, -200)
+    page.keyboard.up("Control")
+    wait_until_moved(canvas, whole)
+    page.keyboard.press("-")
+    page.keyboard.press("-")
+    page.keyboard.press("-")
+    assert picture(canvas) == whole
+    two_robots.get_by_role("button", name="Zoom in").click()
+    assert picture(canvas) == zoomed
+
+
+def test_the_view_follows_a_robot_while_it_drives(page: Page, two_robots: Locator, screenshots: Screenshots) -> None:
+    canvas, scan = two_robots.locator("canvas").all()
+    canvas.hover()
+    whole, of_ann = picture(canvas), picture(scan)
+    page.keyboard.press("f")
+    expect(two_robots.get_by_role("button", name="Follow: ann")).to_have_attribute("aria-pressed", "true")
+    assert picture(canvas) != whole
+    assert count(canvas, LIGHT.robot)[0] > 50
+    page.keyboard.press("ArrowUp")
+    for _ in range(20):
+        page.keyboard.press(".")
+    expect(two_robots.locator("output").first).to_have_text("2.00 s", timeout=PATIENCE * 1000)
+    assert count(canvas, LIGHT.robot)[0] > 50
+    screenshots(page, "live-view-follow")
+    canvas.hover()  # the page has scrolled
+    page.keyboard.press("f")
+    expect(two_robots.get_by_role("button", name="Follow: bob")).to_be_visible()
+    assert picture(scan) != of_ann
+    assert count(canvas, LIGHT.others[0])[0] > 50
+    page.keyboard.press("f")
+    expect(two_robots.get_by_role("button", name="Follow")).to_have_attribute("aria-pressed", "false")
+
+
+def test_two_robots_are_named(two_robots: Locator) -> None:
+    lines = two_robots.locator(".run-said p")
+    expect(lines).to_have_count(2)
+    expect(lines.first).to_contain_text("ann: moves")
+    expect(lines.last).to_contain_text("bob: moves")
+    expect(two_robots.locator(".run-driver")).to_have_text("ann: drive with the arrows")
+    expect(two_robots.get_by_role("img", name="The scan of ann in its own frame, with x up")).to_be_visible()
+
+
+def test_the_view_can_be_zoomed_while_the_kernel_is_busy(page: Page, lab: Lab) -> None:
+    drive = DRIVE.format(world=str(ROOT / "assets/worlds/lab.yaml"))
+    wait = "from pathlib import Path\nimport time\nwhile not Path('go').exists():\n    time.sleep(0.05)"
+    view = open_view(page, lab, "busy.ipynb", [drive, wait])
+    canvas, clock = view.locator("canvas").first, view.locator("output").first
+    whole, time = picture(canvas), clock.inner_text()
+    canvas.hover()
+    page.keyboard.press("+")
+    assert picture(canvas) != whole
+    page.keyboard.press("0")
+    assert picture(canvas) == whole
+    assert clock.inner_text() == time
+    (lab.folder / "go").touch()
+    wait_until_moved(canvas, whole)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_view_has_no_empty_band_and_axe_finds_no_violation(
+    page: Page, lab: Lab, screenshots: Screenshots, theme: str
+) -> None:
+    world = str(ROOT / "assets/worlds/moving_obstacle.yaml")
+    view = open_view(page, lab, f"{theme}.ipynb", [TWO.format(world=world, theme=theme)])
+    background = {"light": "rgb(255, 255, 255)", "dark": "rgb(17, 22, 27)"}[theme]
+    expect(view).to_have_css("background-color", background)
+    for look in looks(page):
+        view.scroll_into_view_if_needed()
+        above = max(bottom(canvas) for canvas in view.locator("canvas").all())
+        row = view.get_by_role("button", name="Play").bounding_box()
+        assert row is not None
+        assert 0 < row["y"] - above < 30, look
+        assert 0 < bottom(view) - bottom(view.locator("details")) < 30, look
+        report = Axe().run(page, context=".run-player", options=RULES)
+        assert report.violations_count == 0, f"{look}: {report.generate_report()}"
+        view.screenshot(path=screenshots.folder / f"live-view-{theme}-{look}.png")
+
+
+def bottom(part: Locator) -> float:
+    """Return the lower edge of a part of the page, in pixels."""
+    box = part.bounding_box()
+    assert box is not None
+    return box["y"] + box["height"]
 
 
 def test_an_error_of_the_callback_is_shown_in_the_cell(page: Page, lab: Lab, screenshots: Screenshots) -> None:
     first = DRIVE.format(world=str(ROOT / "assets/worlds/empty_room.yaml")).replace("\nview\n", "\nview.pause()\n")
-    lab.open(page, "break.ipynb", [first, BREAK])
-    error = page.get_by_text("ZeroDivisionError: float division by zero").first
-    expect(error).to_be_visible(timeout=PATIENCE * 1000)
-    expect(page.get_by_text("in broken")).to_be_visible()
-    expect(page.get_by_title("Play", exact=True)).to_be_visible()
+    view = open_view(page, lab, "break.ipynb", [first, BREAK])
+    error = view.get_by_role("alert")
+    expect(error).to_contain_text("ZeroDivisionError: float division by zero", timeout=PATIENCE * 1000)
+    expect(error).to_contain_text("in broken")
+    expect(view.get_by_role("button", name="Play")).to_be_visible()
     page.screenshot(path=screenshots.folder / "live-view-error.png")
 
 

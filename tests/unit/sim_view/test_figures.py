@@ -224,10 +224,10 @@ def test_bridge_maps_and_export_import_no_drawing_library_and_the_view_imports_n
     code = """
 import sys
 import sim.bridge, sim.maps, sim.export
-assert not {"matplotlib", "rclpy", "ipywidgets"} & set(sys.modules)
+assert not {"matplotlib", "rclpy", "ipywidgets", "anywidget"} & set(sys.modules)
 import sim.view
 sim.view.show(sim.World.from_segments(sim.box(2, 2))).png()
-assert not {"matplotlib.pyplot", "ipywidgets", "rclpy"} & set(sys.modules)
+assert not {"matplotlib.pyplot", "ipywidgets", "anywidget", "rclpy"} & set(sys.modules)
 """
     completed = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert completed.returncode == 0, completed.stderr

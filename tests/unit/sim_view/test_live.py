@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-import io
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from PIL import Image
 
-from sim import Command, Recording, RobotSpec, Scan, Simulation, World, box, load_world
+from sim import Command, Recording, Scan, Simulation, World
 from sim.view import LiveView, Picture, Player, live, plot
-from sim.view.renderer import Renderer
 from sim.view.session import MAX_NS, Session
-from sim.view.theme import DARK, LIGHT
 
-ROOT = Path(__file__).resolve().parents[3]
 SECOND = 1_000_000_000
 PATIENCE = 60.0
 
@@ -54,17 +46,14 @@ def in_other_thread(function: Callable[..., Any], *arguments: Any) -> Any:
         return thread.submit(function, *arguments).result()
 
 
-def widgets_of(view: LiveView) -> dict[str, Any]:
-    """Return the view's widgets by tooltip, and those without a tooltip by class."""
-    widgets: dict[str, Any] = {}
+def state_of(view: LiveView) -> Any:
+    """Return the widget, whose traits are what the page shows."""
+    return view.widget
 
-    def visit(widget: Any) -> None:
-        widgets[getattr(widget, "tooltip", None) or type(widget).__name__] = widget
-        for child in getattr(widget, "children", ()):
-            visit(child)
 
-    visit(view.widget)
-    return widgets
+def ask(view: LiveView, action: str, **more: Any) -> None:
+    """Send a message to the view, as its page does."""
+    state_of(view)._handle_custom_msg({"action": action, **more}, [])
 
 
 def test_the_view_plays_on_the_event_loop_without_blocking_it(world: World) -> None:
@@ -103,10 +92,11 @@ def test_steps_are_exact(world: World) -> None:
 def test_a_view_can_seek_to_the_past_and_continue_from_there(world: World) -> None:
     view = paused_view(world, drive_forward)
     view.step(2.0)
-    newest = widgets_of(view)["Image"].value
+    newest = state_of(view).frame
     view.seek(0.5)
     assert view.time == 0.5
-    assert widgets_of(view)["Image"].value != newest
+    assert (state_of(view).frame["time"], state_of(view).frame["end"]) == (0.5, 2.0)
+    assert state_of(view).frame["robots"][0]["pose"] != newest["robots"][0]["pose"]
     view.step(0.1)
     assert view.time == pytest.approx(0.6)
     assert view.recording.times[-1] == pytest.approx(2.0)
@@ -116,30 +106,84 @@ def test_a_view_can_seek_to_the_past_and_continue_from_there(world: World) -> No
 
 def test_reset_discards_the_run(world: World) -> None:
     view = paused_view(world, drive_forward)
-    first = widgets_of(view)["Image"].value
+    first = state_of(view).frame
     view.step(2.0)
-    view.reset()
+    ask(view, "reset")
     assert (view.time, len(view.recording)) == (0.0, 1)
-    assert widgets_of(view)["Image"].value == first
+    assert state_of(view).frame == first
 
 
-def test_the_pad_drives_until_the_robot_is_given_back_to_the_callback(world: World) -> None:
+def test_the_page_drives_until_the_robot_is_given_back_to_the_callback(world: World) -> None:
     view = paused_view(world, drive_forward)
     view.step(1.0)
-    pad = widgets_of(view)
-    pad["Turn left"].click()
+    ask(view, "drive", forward=0, left=1)
+    assert state_of(view).driver == "+0.00 m/s  +0.90 rad/s"
     view.step(1.0)
     assert view.recording.velocities[-1, 0].tolist() == pytest.approx([0.0, 0.9])
-    pad["Stop the robot"].click()
+    ask(view, "drive", forward=0, left=0)
     view.step(1.0)
     assert view.recording.velocities[-1, 0].tolist() == [0.0, 0.0]
-    pad["Let your code drive"].click()
+    ask(view, "release")
+    assert state_of(view).driver == "your code drives"
     view.step(1.0)
     assert view.recording.velocities[-1, 0].tolist() == pytest.approx([0.3, 0.0])
 
 
+def test_the_page_plays_pauses_steps_and_sets_the_speed(world: World) -> None:
+    async def control() -> None:
+        view = paused_view(world, drive_forward)
+        ask(view, "step")
+        assert view.time == pytest.approx(0.1)
+        ask(view, "speed", factor=4.0)
+        ask(view, "play")
+        assert view.playing
+        assert state_of(view).playing
+        await wait_until(lambda: view.time > 0.5)
+        ask(view, "pause")
+        assert not view.playing
+        assert not state_of(view).playing
+        ask(view, "unknown")
+
+    in_other_thread(asyncio.run, control())
+
+
+def test_a_seek_of_the_page_pauses(world: World) -> None:
+    async def seek() -> None:
+        view = paused_view(world, drive_forward)
+        view.step(2.0)
+        view.play()
+        ask(view, "seek", time=1.0)
+        assert (view.playing, view.time) == (False, 1.0)
+
+    in_other_thread(asyncio.run, seek())
+
+
+def test_the_speed_of_the_view_is_that_of_the_page(world: World) -> None:
+    view = live(world, speed=3.0, play=False)
+    assert isinstance(view, LiveView)
+    assert state_of(view).speed == 3.0
+    view.set_speed(0.5)
+    assert state_of(view).speed == 0.5
+
+
 def test_without_a_callback_the_robot_cannot_be_given_back(world: World) -> None:
-    assert "Let your code drive" not in widgets_of(paused_view(world))
+    state = state_of(paused_view(world))
+    assert not state.run["releasable"]
+    assert state.driver == "drive with the arrows"
+
+
+def test_the_driven_robot_is_named_if_there_are_several(recording: Recording) -> None:
+    view = paused_view(recording.simulation)
+    assert state_of(view).driver == "one: drive with the arrows"
+    ask(view, "drive", forward=1, left=0)
+    assert state_of(view).driver == "one: +0.22 m/s  +0.00 rad/s"
+
+
+def test_a_page_without_widgets_shows_what_the_view_is(world: World) -> None:
+    view = paused_view(world)
+    bundle, _ = view._repr_mimebundle_()
+    assert bundle["text/plain"] == repr(view)
+    assert bundle["application/vnd.jupyter.widget-view+json"]["model_id"] == state_of(view).model_id
 
 
 def test_an_exception_of_the_callback_stops_time_and_is_shown_without_internal_frames(world: World) -> None:
@@ -148,20 +192,19 @@ def test_an_exception_of_the_callback_stops_time_and_is_shown_without_internal_f
 
     view = paused_view(world, broken)
     view.step(1.0)
-    (output,) = widgets_of(view)["Output"].outputs
-    assert output["name"] == "stderr"
-    assert "LookupError: no such wall" in output["text"]
-    assert "in broken" in output["text"]
-    assert "session.py" not in output["text"]
+    error = state_of(view).error
+    assert "LookupError: no such wall" in error
+    assert "in broken" in error
+    assert "session.py" not in error
     assert view.time == 0.0
     view.reset()
-    assert widgets_of(view)["Output"].outputs == ()
+    assert state_of(view).error == ""
 
 
 def test_a_callback_that_returns_another_type_is_an_error_with_the_right_type(world: World) -> None:
     view = paused_view(world, lambda scan: 0.3)
     view.step(1.0)
-    assert "must return a Command or None, not float" in widgets_of(view)["Output"].outputs[0]["text"]
+    assert "must return a Command or None, not float" in state_of(view).error
 
 
 def test_a_callback_gets_each_scan_once(world: World) -> None:
@@ -179,15 +222,6 @@ def test_a_recording_is_played_without_other_files(recording: Recording) -> None
     assert 'data-theme="dark" data-speed="2" data-play="yes"' in bundle["text/html"]
     assert bundle["text/plain"] == repr(view) == plot(recording).alt
     assert bundle["image/png"]
-
-
-def test_the_slider_seeks_while_time_is_paused(world: World) -> None:
-    view = paused_view(world, drive_forward)
-    view.step(2.0)
-    slider = widgets_of(view)["FloatSlider"]
-    assert slider.value == pytest.approx(2.0)
-    slider.value = 1.0
-    assert view.time == 1.0
 
 
 def test_the_view_is_a_picture_while_a_notebook_is_graded(
@@ -226,53 +260,3 @@ def test_a_session_stops_growing_at_its_longest_time() -> None:
     session.advance(MAX_NS + 5 * SECOND)
     assert session.end_ns == MAX_NS
     assert not session.growing
-
-
-@pytest.mark.parametrize("theme", [LIGHT, DARK])
-def test_a_blitted_frame_is_the_same_as_a_fresh_one(world: World, theme: Any) -> None:
-    session = Session(Simulation(world), drive_forward)
-    session.advance(3 * SECOND)
-    used = Renderer(session.simulation, theme)
-    for frame in session.frames[::20]:
-        used.draw(frame, session.trail(frame.state.time_ns))
-    last = session.frames[-1]
-    reused = used.draw(last, session.trail(last.state.time_ns))
-    fresh = Renderer(session.simulation, theme).draw(last, session.trail(last.state.time_ns))
-    assert np.array_equal(np.asarray(reused), np.asarray(fresh))
-
-
-def test_frames_are_jpeg_or_png_of_one_size(world: World) -> None:
-    session = Session(Simulation(world))
-    renderer = Renderer(session.simulation, LIGHT)
-    jpeg, png = (Image.open(io.BytesIO(data)) for data in (renderer.jpeg(session.at(0)), renderer.png(session.at(0))))
-    assert (jpeg.format, png.format) == ("JPEG", "PNG")
-    assert jpeg.size == png.size
-    assert jpeg.width == renderer.width
-
-
-@pytest.mark.parametrize("size", [(12.0, 8.0), (8.0, 2.0), (2.0, 8.0), (3.0, 3.0)])
-def test_a_frame_has_no_empty_band_beside_or_below_the_world(size: tuple[float, float]) -> None:
-    session = Session(Simulation(World.from_segments(box(*size))))
-    picture = np.asarray(Renderer(session.simulation, LIGHT).draw(session.at(0))).astype(int)
-    is_drawn = np.abs(picture - 255).max(axis=2) > 4
-    rows, columns = np.flatnonzero(is_drawn.any(axis=1)), np.flatnonzero(is_drawn.any(axis=0))
-    assert picture.shape[0] - rows[-1] < 40
-    assert picture.shape[1] - columns[-1] < 40
-
-
-def test_a_frame_names_robots_if_there_are_several(recording: Recording) -> None:
-    def frame(*names: str) -> Any:
-        session = Session(replace(recording.simulation, robots=tuple(RobotSpec(name=name) for name in names)))
-        return np.asarray(Renderer(session.simulation, LIGHT).draw(session.at(0))).astype(int)
-
-    difference = np.abs(frame("one", "two") - frame("one", "else")).max(axis=2) > 60
-    assert difference.sum() > 20
-
-
-def test_a_moving_obstacle_moves_in_the_picture() -> None:
-    world = load_world(ROOT / "assets" / "worlds" / "moving_obstacle.yaml")
-    session = Session(Simulation(world))
-    session.advance(2 * SECOND)
-    renderer = Renderer(session.simulation, LIGHT)
-    first, last = (np.asarray(renderer.draw(session.at(instant))) for instant in (0, 2 * SECOND))
-    assert (np.abs(first[60:, :600].astype(int) - last[60:, :600]).max(axis=2) > 60).sum() > 200
