@@ -65,13 +65,15 @@ def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]
     """Return a small set of mutants that together fail every check.
 
     Each mutant comes with the checks that it represents and their dependencies. A mutant that fails a check directly
-    is preferred to one that also fails a dependency of that check.
+    is preferred to one that also fails a dependency of that check. If no record shows that a mutant fails a check, a
+    mutant without a record represents it, provided that it was written for this check.
     """
     suite = suites.hidden(assignment)
     dependencies = {check.id: frozenset(check.dependencies) for check in suite.checks}
     candidates = sorted(mutants(assignment), key=lambda m: m.slow)
     direct_failures = {m.id: {name for name in m.fails if not dependencies[name] & m.fails} for m in candidates}
     all_failures = {m.id: set(m.fails) for m in candidates}
+    unrecorded_failures = {m.id: set() if m.fails else {m.check} for m in candidates}
     quick_mutants = [m for m in candidates if not m.slow]
     chosen_checks: dict[str, set[str]] = {}
     uncovered_checks = set(dependencies)
@@ -79,6 +81,7 @@ def one_mutant_per_check(assignment: str) -> list[tuple[Mutant, tuple[str, ...]]
         (direct_failures, quick_mutants),
         (all_failures, quick_mutants),
         (all_failures, candidates),
+        (unrecorded_failures, candidates),
     ):
         while best := max(pool, key=lambda m: len(covered_by[m.id] & uncovered_checks), default=None):
             if not covered_by[best.id] & uncovered_checks:
