@@ -17,6 +17,7 @@ from nbformat import NotebookNode
 from autograder import course_paths
 from autograder.author.course.cells import is_graded, metadata_findings
 from autograder.author.course.contract_rules import cells_findings, coverage_findings
+from autograder.author.course.copy_rules import target_findings
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding, display_path
 from autograder.author.course.mutant_rules import mutants_findings, unproven_checks
@@ -173,6 +174,7 @@ def _notebook_findings(chapter: Chapter, notebook: NotebookNode, parsed_checks: 
     name = chapter.notebook_path.name
     rules: Sequence[Callable[[], Iterable[Finding]]] = (
         lambda: find_outdated(chapter, notebook, parsed_checks.points),
+        lambda: target_findings(name, notebook),
         lambda: rules_findings(name, notebook),
         lambda: outdated_time_sentence(name, notebook),
         lambda: cells_findings(name, notebook),

@@ -46,7 +46,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name, text in FILES.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)
-    origin = {"source": "node.py", "target": "ws/node.py", "hide": ["main"], "contract": {"runs": "Run."}}
+    origin = {"source": "node.py", "target": "ws/src/node.py", "hide": ["main"], "contract": {"runs": "Run."}}
     chapter(
         tmp_path,
         notebook(

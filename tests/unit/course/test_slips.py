@@ -157,6 +157,13 @@ SLIPS = [
         "7",
         "'nearest(scan)' occurs 2 times in mapping/mapping/nearest.py, and",
     ),
+    (
+        NOTEBOOK,
+        '"target": "ws/src/mapping/mapping/nearest.py"',
+        '"target": "ws/src/mapping/mapping/nearst.py"',
+        "140, cell 'nearest'",
+        "the target `ws/src/mapping/mapping/nearst.py` is not the place of its source mapping/mapping/nearest.py: did",
+    ),
 ]
 
 
