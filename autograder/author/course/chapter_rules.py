@@ -20,7 +20,7 @@ from autograder.author.course.contract_rules import cells_findings, coverage_fin
 from autograder.author.course.copy_rules import target_findings
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding, display_path
-from autograder.author.course.mutant_rules import mutants_findings, unproven_checks
+from autograder.author.course.mutant_rules import mutants_findings, unknown_records, unproven_checks
 from autograder.author.course.notebook_rules import rules_findings
 from autograder.author.course.reference_rules import packages_findings, python_findings, variants_findings
 from autograder.author.course.suite_rules import read_suite
@@ -89,8 +89,8 @@ def read_chapter(chapter: Chapter) -> ParsedChapter:
         else tuple(c for c in parsed_checks.checks if c.visibility is Visibility.HIDDEN)
     )
     if hidden:
-        unproven_findings = unproven_checks(folder, [check.id for check in hidden])
-        findings = [*unproven_findings, *_outdated_titles(chapter.assignment), *findings]
+        mutant_findings = [*unproven_checks(folder, [check.id for check in hidden]), *unknown_records(folder)]
+        findings = [*mutant_findings, *_outdated_titles(chapter.assignment), *findings]
     return ParsedChapter((*parsed_checks.findings, *findings), notebook, hidden)
 
 

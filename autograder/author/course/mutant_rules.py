@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -43,16 +44,33 @@ def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
     """Yield a finding for each hidden check if no mutant was written for it and none is recorded to fail it."""
     file = _read_mutants(folder)
     entries = [entry for _, entry in _entries(file)]
+    rows = _read_snapshot(folder).data
     proven_checks = {str(entry.get("check")) for entry in entries}
-    if (folder / SNAPSHOT).is_file():
-        snapshot = read_yaml(folder / SNAPSHOT)
-        rows = {} if snapshot.findings else snapshot.data or {}
-        proven_checks |= {
-            check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)
-        }
+    proven_checks |= {check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)}
     for check in checks:
         if check not in proven_checks:
             yield file.finding((), f"no mutant fails the check `{check}`: add one with an error that it finds")
+
+
+def unknown_records(folder: Path) -> Iterator[Finding]:
+    """Yield a finding for each record of a mutant that `mutants.yaml` does not define.
+
+    This is no reason to refuse a verification, which can remove the record.
+    """
+    mutants, snapshot = _read_mutants(folder), _read_snapshot(folder)
+    ids = [str(entry.get("id")) for _, entry in _entries(mutants)]
+    command = f"autograder verify --assignment {folder.name.removeprefix('ch')} --record"
+    for name in snapshot.data if not mutants.findings else ():
+        if name not in ids:
+            message = f"{MUTANTS} has no mutant `{name}`: correct its `id` there, or remove this record by `{command}`"
+            yield snapshot.finding((str(name),), message)
+
+
+def _read_snapshot(folder: Path) -> YamlFile:
+    """Return a chapter's snapshot. Its data are the records by mutant, or empty if it is missing or invalid."""
+    path = folder / SNAPSHOT
+    file = read_yaml(path) if path.is_file() else YamlFile(display_path(path), None, {})
+    return replace(file, data={} if file.findings else file.data or {})
 
 
 def _read_mutants(folder: Path) -> YamlFile:

@@ -14,6 +14,7 @@ from autograder import course_paths
 from tests.unit.course.check_server import END
 
 CHECKS = "checks/ch10_mapping"
+SNAPSHOT = f"{CHECKS}/mutants.snapshot.yaml"
 SUITE = f"{CHECKS}/hidden/__init__.py"
 READINGS = f"{CHECKS}/hidden/readings.py"
 MUTANTS = f"{CHECKS}/mutants.yaml"
@@ -163,6 +164,13 @@ SLIPS = [
         '"target": "ws/src/mapping/mapping/nearst.py"',
         "140, cell 'nearest'",
         "the target `ws/src/mapping/mapping/nearst.py` is not the place of its source mapping/mapping/nearest.py: did",
+    ),
+    (
+        SNAPSHOT,
+        "first: [",
+        "frist: [",
+        "4",
+        "mutants.yaml has no mutant `frist`: correct its `id` there, or remove this",
     ),
 ]
 
