@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+import ast
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ def mutants_findings(folder: Path, checks: Collection[str] | None, sources: Coll
     file = _read_mutants(folder)
     yield from file.findings
     ids: set[str] = set()
+    records = _read_snapshot(folder).data
     for path, entry in _entries(file):
         if (id := str(entry.get("id"))) in ids:
             yield file.finding((*path, "id"), f"two mutants are called `{id}`")
@@ -37,7 +39,12 @@ def mutants_findings(folder: Path, checks: Collection[str] | None, sources: Coll
         if checks is not None and "check" in entry and check not in checks:
             message = f"the hidden suite has no check `{check}`: {suggestion(check, checks)}"
             yield file.finding((*path, "check"), message)
-        yield from _edits_findings(file, path, entry, sources)
+        edited_texts: dict[str, tuple[KeyPath, str]] = {}
+        edits_findings = [*_edits_findings(file, path, entry, sources, edited_texts)]
+        yield from edits_findings
+        # A mutant is meant not to be Python if a record says that its programs do not run, or if it gives a reason.
+        if not (edits_findings or "reason" in entry or isinstance(records.get(entry.get("id")), dict)):
+            yield from _syntax_findings(file, edited_texts)
 
 
 def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
@@ -95,9 +102,16 @@ def _recorded_failures(row: Any, checks: Collection[str]) -> Collection[str]:
 
 
 def _edits_findings(
-    file: YamlFile, path: KeyPath, entry: dict[str, Any], sources: Collection[str]
+    file: YamlFile,
+    path: KeyPath,
+    entry: dict[str, Any],
+    sources: Collection[str],
+    edited_texts: dict[str, tuple[KeyPath, str]],
 ) -> Iterator[Finding]:
-    """Yield the problems in the edits of a mutant. Each edit applies to the result of the previous ones."""
+    """Yield the problems in the edits of a mutant. Each edit applies to the result of the previous ones.
+
+    Add the new text of each edited file to `edited_texts`, with the key path of its last edit.
+    """
     texts: dict[str, str | None] = {}
     edits = entry.get("edits")
     for index, edit in enumerate(edits if isinstance(edits, list) else ()):
@@ -119,6 +133,7 @@ def _edits_findings(
         text, find, replacement = texts[name], edit.get("find"), edit.get("replace")
         if "write" in edit:
             texts[name] = str(edit["write"])
+            edited_texts[name] = (*edit_path, "write"), str(edit["write"])
         elif text is None:
             yield file.finding(name_path, f"the reference has no file {course_paths.course().solutions}/{name}")
         elif isinstance(find, str) and isinstance(replacement, str):
@@ -128,3 +143,19 @@ def _edits_findings(
             elif find == replacement:
                 yield file.finding((*edit_path, "replace"), f"the edit replaces {replacement!r} with itself")
             texts[name] = text.replace(find, replacement)
+            edited_texts[name] = (*edit_path, "replace"), text.replace(find, replacement)
+        elif edit.get("delete"):
+            edited_texts.pop(name, None)
+
+
+def _syntax_findings(file: YamlFile, edited_texts: Mapping[str, tuple[KeyPath, str]]) -> Iterator[Finding]:
+    """Yield a finding for each edited Python file that cannot be parsed."""
+    for name, (path, text) in edited_texts.items():
+        try:
+            ast.parse(text if name.endswith(".py") else "")
+        except (SyntaxError, ValueError) as error:  # a null byte is a ValueError
+            reason, line = getattr(error, "msg", error), getattr(error, "lineno", None) or 1
+            message = (
+                f"after this edit, {name} is not Python: {reason} in line {line}. Correct it, or, if students make"
+            )
+            yield file.finding(path, f"{message} this error, say in `reason` of the mutant that it is intended")

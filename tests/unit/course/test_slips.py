@@ -172,6 +172,13 @@ SLIPS = [
         "4",
         "mutants.yaml has no mutant `frist`: correct its `id` there, or remove this",
     ),
+    (
+        MUTANTS,
+        "replace: max(filter",
+        'replace: "max((filter"',
+        "7",
+        "after this edit, mapping/mapping/nearest.py is not Python: ",
+    ),
 ]
 
 
