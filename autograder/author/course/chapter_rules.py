@@ -22,10 +22,11 @@ from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding, display_path
 from autograder.author.course.mutant_rules import mutants_findings, unknown_records, unproven_checks
 from autograder.author.course.notebook_rules import rules_findings
-from autograder.author.course.reference_rules import packages_findings, python_findings, variants_findings
+from autograder.author.course.reference_rules import packages_findings, python_findings
 from autograder.author.course.suite_rules import read_suite
 from autograder.author.course.sync import Chapter, find_outdated
 from autograder.author.course.tables import titles_of
+from autograder.author.course.variant_rules import variants_findings
 from autograder.author.course.workload import outdated_time_sentence
 from autograder.exceptions import AutograderError
 from autograder.suite import Check, Visibility, suites

@@ -1,4 +1,4 @@
-"""The rules for the reference's packages, and for the other files of a chapter's checks."""
+"""The rules for the reference's packages, and for the Python files beside a chapter's suites."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from pathlib import Path
 from autograder import course_paths
 from autograder.author.course.findings import Finding, display_path
 from autograder.author.course.python_files import read_python
-from autograder.author.course.schema_sentences import suggestion
 
 MANIFEST = "package.xml"
 
@@ -28,15 +27,6 @@ def python_findings(folder: Path) -> Iterator[Finding]:
     """Yield a finding for each Python file of a chapter's checks that cannot be parsed, except the suites' modules."""
     for path in sorted([*folder.glob("*.py"), *folder.glob("support/**/*.py"), *folder.glob("*/conftest.py")]):
         yield from read_python(path).findings
-
-
-def variants_findings(folder: Path, packages: Collection[str]) -> Iterator[Finding]:
-    """Yield a finding for each package in a chapter's variants that the suite does not grade."""
-    for variant in sorted(path for path in folder.glob("*") if path.is_dir()):
-        for package in sorted(path.name for path in variant.iterdir()):
-            if packages and package not in packages:
-                message = f"`{package}` is not a package of the suite: {suggestion(package, packages)}"
-                yield Finding(display_path(variant / package), None, message)
 
 
 def _manifest_findings(path: Path, package: str) -> Iterator[Finding]:

@@ -179,6 +179,13 @@ SLIPS = [
         "7",
         "after this edit, mapping/mapping/nearest.py is not Python: ",
     ),
+    (
+        f"{CHECKS}/variants/loop/mapping/mapping/nearst.py",
+        None,
+        '"""Nothing."""',
+        "1",
+        "replaces no file of the reference, and no other file of the variant names `nearst`: did you mean `mapping",
+    ),
 ]
 
 
