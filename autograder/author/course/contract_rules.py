@@ -1,7 +1,8 @@
 """The rules for a chapter's requirements: the cell that names a requirement contains it, and a check covers it.
 
-A cell that names requirements must name every one that it contains. Each table row, each bullet, and the docstring of
-each function that the student writes must contain a requirement or a text in `explains`.
+A cell that names requirements must name every one that it contains, and so must a cell that an objective names as its
+exercise. Each table row, each bullet, and the docstring of each function that the student writes must contain a
+requirement or a text in `explains`.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ from autograder.suite.quotation import quote
 
 def cells_findings(name: str, notebook: NotebookNode) -> Iterator[Finding]:
     """Yield the problems with the requirements in the cells of a notebook, which findings call `name`."""
+    exercises = {entry["exercise"] for entry in metadata(notebook).get("objectives", [])}
     for cell in in_form(notebook, Form.RELEASED).cells:
-        yield from (Finding(name, cell.id, message) for message in _cell_findings(cell))
+        yield from (Finding(name, cell.id, message) for message in _cell_findings(cell, cell.id in exercises))
 
 
 def coverage_findings(
@@ -51,7 +53,7 @@ def coverage_findings(
             yield Finding(file, None, f"the {check.visibility.value} check {check.id!r} {message}", line)
 
 
-def _cell_findings(cell: NotebookNode) -> Iterator[str]:
+def _cell_findings(cell: NotebookNode, is_exercise: bool) -> Iterator[str]:
     """Yield the problems with the requirements of a released cell."""
     course = metadata(cell)
     contract, explains = course.get("contract", {}), course.get("explains", [])
@@ -69,7 +71,8 @@ def _cell_findings(cell: NotebookNode) -> Iterator[str]:
             yield f"{name!r} is marked as unchecked, but is not a requirement of the cell"
     texts = [_normalize_spaces(text) for group in (*quotes.values(), explains) for text in group]
     hidden_functions = course.get("hide", [])
-    for piece in _pieces(cell, hidden_functions) if contract or hidden_functions else ():
+    names_requirements = contract or explains or hidden_functions or is_exercise
+    for piece in _pieces(cell, hidden_functions) if names_requirements else ():
         if not any(text in piece for text in texts):
             yield f"neither `contract` nor `explains` names a sentence of {piece!r}"
 

@@ -26,6 +26,7 @@ TABLE = """The node is called `guard`.
   exit status 0."""
 ROW, ENDS = "| no scan yet | 0 | 0 |", "- It ends with exit status 0."
 FUNCTION = '%%writefile ws/a.py\ndef main():\n    """Run."""\n'
+UNNAMED = "neither `contract` nor `explains` names a sentence of {!r}"
 MAX_UNCHECKED = 12  # in the whole course
 
 
@@ -83,9 +84,21 @@ def test_a_text_that_differs_from_the_released_one_is_found() -> None:
 
 def test_a_row_or_a_bullet_without_an_id_is_found_unless_it_only_explains() -> None:
     incomplete = {"contract": {"waits": ROW}}
-    expected = f"neither `contract` nor `explains` names a sentence of {ENDS!r}"
-    assert messages(contract_notebook(**incomplete), check("stops", "waits")) == [expected]
+    assert messages(contract_notebook(**incomplete), check("stops", "waits")) == [UNNAMED.format(ENDS)]
     assert messages(contract_notebook(**incomplete, explains=["exit status 0."]), check("stops", "waits")) == []
+
+
+def test_a_cell_that_only_explains_names_each_row_and_bullet() -> None:
+    assert messages(notebook(prose(TABLE, "table", course={"explains": [ROW]}))) == [UNNAMED.format(ENDS)]
+    assert messages(notebook(prose(TABLE, "table", course={"explains": [ROW, ENDS]}))) == []
+
+
+def test_a_cell_that_an_objective_names_as_its_exercise_names_each_row_and_bullet() -> None:
+    cells = [prose("- A bullet.", name) for name in ("before", "exercise")]
+    objective = {"objective": "guard", "exercise": "exercise", "groups": ["graph"]}
+    findings = broken("small.ipynb", notebook(*cells, objectives=[objective]), ())
+    assert [(finding.cell, finding.message) for finding in findings] == [("exercise", UNNAMED.format("- A bullet."))]
+    assert messages(notebook(*cells)) == []
 
 
 def test_a_sentence_that_the_release_does_not_show_is_found() -> None:
