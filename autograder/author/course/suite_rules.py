@@ -139,7 +139,10 @@ def _checks_findings(file: PythonFile, locations: dict[str, tuple[str, int]], ha
         points = literal(argument(call, "points"))
         if argument(call, "points") is None:
             yield file.finding(call, f"the check `{id}` has no `points`")
-        if isinstance(points, (int, float)) and points <= 0:
+        if points is not None and (isinstance(points, bool) or not isinstance(points, (int, float))):
+            message = f"`points` of the check `{id}` is {points!r}: write a number, such as points=1, without quotes"
+            yield file.finding(argument(call, "points"), message)
+        elif points is not None and points <= 0:
             yield file.finding(call, f"the check `{id}` is worth {points}: points must be above 0")
         decorators_above = function.decorator_list[: function.decorator_list.index(call)]
         if any(decorator_name(decorator) == "hint" for decorator in decorators_above):

@@ -186,6 +186,13 @@ SLIPS = [
         "1",
         "replaces no file of the reference, and no other file of the variant names `nearst`: did you mean `mapping",
     ),
+    (
+        READINGS,
+        "check(points=1",
+        'check(points="1"',
+        "36",
+        "`points` of the check `silent` is '1': write a number, such as points=1, without quotes",
+    ),
 ]
 
 
