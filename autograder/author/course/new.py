@@ -27,7 +27,9 @@ IMPORTED_CLASSES = {"Node", "LaserScan", "Float32", "ExternalShutdownException"}
 
 
 def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple[Path, ...]:
-    """Write a chapter of this name into the course, and return its folders: notebook, checks and reference.
+    """Write a chapter of this name into the course, and return its folders and the syllabus, to which it is added.
+
+    The folders are those of the notebook, the checks and the reference.
 
     Args:
         assignment: two digits and a name, such as `10_mapping`.
@@ -69,7 +71,7 @@ def write_chapter(assignment: str, package: str = "", node: str = NODE) -> tuple
     objective = f"{OBJECTIVES}  {package}: {title}\n"
     syllabus.write_text(text.replace(OBJECTIVES, objective, 1), encoding="utf-8")
     _complete(Chapter(folders[0]))
-    return folders
+    return *folders, syllabus
 
 
 def write_course(folder: Path) -> None:
