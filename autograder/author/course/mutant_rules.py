@@ -24,13 +24,12 @@ def mutants_findings(folder: Path, checks: Collection[str] | None, sources: Coll
         checks: the ids of the hidden checks; None if they are unknown.
         sources: the folders of the reference that form an answer; empty if they are unknown.
     """
-    for name in (SURVIVORS, SNAPSHOT):
-        if (folder / name).is_file():
-            yield from read_yaml(folder / name).findings
-    file = _read_mutants(folder)
+    if (folder / SURVIVORS).is_file():
+        yield from read_yaml(folder / SURVIVORS).findings
+    file, snapshot = _read_mutants(folder), _read_snapshot(folder)
+    yield from snapshot.findings
     yield from file.findings
     ids: set[str] = set()
-    records = _read_snapshot(folder).data
     for path, entry in _entries(file):
         if (id := str(entry.get("id"))) in ids:
             yield file.finding((*path, "id"), f"two mutants are called `{id}`")
@@ -39,11 +38,10 @@ def mutants_findings(folder: Path, checks: Collection[str] | None, sources: Coll
         if checks is not None and "check" in entry and check not in checks:
             message = f"the hidden suite has no check `{check}`: {suggestion(check, checks)}"
             yield file.finding((*path, "check"), message)
-        edited_texts: dict[str, tuple[KeyPath, str]] = {}
-        edits_findings = [*_edits_findings(file, path, entry, sources, edited_texts)]
+        edits_findings, edited_texts = _apply_edits(file, path, entry, sources)
         yield from edits_findings
         # A mutant is meant not to be Python if a record says that its programs do not run, or if it gives a reason.
-        if not (edits_findings or "reason" in entry or isinstance(records.get(entry.get("id")), dict)):
+        if not (edits_findings or "reason" in entry or isinstance(snapshot.data.get(entry.get("id")), dict)):
             yield from _syntax_findings(file, edited_texts)
 
 
@@ -101,18 +99,16 @@ def _recorded_failures(row: Any, checks: Collection[str]) -> Collection[str]:
     return checks if failed_checks == "all" else failed_checks
 
 
-def _edits_findings(
-    file: YamlFile,
-    path: KeyPath,
-    entry: dict[str, Any],
-    sources: Collection[str],
-    edited_texts: dict[str, tuple[KeyPath, str]],
-) -> Iterator[Finding]:
-    """Yield the problems in the edits of a mutant. Each edit applies to the result of the previous ones.
+def _apply_edits(
+    file: YamlFile, path: KeyPath, entry: dict[str, Any], sources: Collection[str]
+) -> tuple[list[Finding], dict[str, tuple[KeyPath, str]]]:
+    """Apply the edits of a mutant, each to the result of the previous ones.
 
-    Add the new text of each edited file to `edited_texts`, with the key path of its last edit.
+    Return the problems in them, and the new text of each edited file with the key path of its last edit.
     """
+    findings: list[Finding] = []
     texts: dict[str, str | None] = {}
+    edited_texts: dict[str, tuple[KeyPath, str]] = {}
     edits = entry.get("edits")
     for index, edit in enumerate(edits if isinstance(edits, list) else ()):
         if not isinstance(edit, dict):
@@ -120,32 +116,37 @@ def _edits_findings(
         edit_path = (*path, "edits", str(index))
         name = edit.get("file", file.data.get("file"))
         if not isinstance(name, str):
-            yield file.finding(edit_path, "has no `file`, and the top of mutants.yaml does not name a default one")
+            message = "has no `file`, and the top of mutants.yaml does not name a default one"
+            findings.append(file.finding(edit_path, message))
             continue
         name_path = (*edit_path, "file") if "file" in edit else ("file",)
         source = course_paths.SOLUTIONS / name
         if sources and name.partition("/")[0] not in sources:
             message = f"`{name}` is not in a package of the suite: {suggestion(name, sources)}"
-            yield file.finding(name_path, message)
+            findings.append(file.finding(name_path, message))
             continue
         if name not in texts:
             texts[name] = source.read_text(encoding="utf-8") if source.is_file() else None
         text, find, replacement = texts[name], edit.get("find"), edit.get("replace")
         if "write" in edit:
-            texts[name] = str(edit["write"])
-            edited_texts[name] = (*edit_path, "write"), str(edit["write"])
+            texts[name] = new_text = str(edit["write"])
+            edited_texts[name] = (*edit_path, "write"), new_text
         elif text is None:
-            yield file.finding(name_path, f"the reference has no file {course_paths.course().solutions}/{name}")
+            message = f"the reference has no file {course_paths.course().solutions}/{name}"
+            findings.append(file.finding(name_path, message))
         elif isinstance(find, str) and isinstance(replacement, str):
             if text.count(find) != 1:
                 times = f"{text.count(find)} times" if text.count(find) else "nowhere"
-                yield file.finding((*edit_path, "find"), f"{find!r} occurs {times} in {name}, and must occur once")
+                message = f"{find!r} occurs {times} in {name}, and must occur once"
+                findings.append(file.finding((*edit_path, "find"), message))
             elif find == replacement:
-                yield file.finding((*edit_path, "replace"), f"the edit replaces {replacement!r} with itself")
-            texts[name] = text.replace(find, replacement)
-            edited_texts[name] = (*edit_path, "replace"), text.replace(find, replacement)
+                message = f"the edit replaces {replacement!r} with itself"
+                findings.append(file.finding((*edit_path, "replace"), message))
+            texts[name] = new_text = text.replace(find, replacement)
+            edited_texts[name] = (*edit_path, "replace"), new_text
         elif edit.get("delete"):
             edited_texts.pop(name, None)
+    return findings, edited_texts
 
 
 def _syntax_findings(file: YamlFile, edited_texts: Mapping[str, tuple[KeyPath, str]]) -> Iterator[Finding]:
