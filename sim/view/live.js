@@ -3,8 +3,6 @@
 const HELP = "Keys work while the mouse is here. Space plays and pauses, and a full stop simulates 0.1 s. ";
 const DRIVE_HELP = "The arrow keys drive as the buttons do: until the next command. S stops the robot. ";
 const SEEK_HELP = "The left and right arrow keys move by 0.1 s. ";
-const VIEW_HELP = "+ and \u2212 zoom, as the mouse wheel with Ctrl and two fingers do, 0 shows all, and F follows a robot. Drag to move what "
-  + "is zoomed. The dashed line in front of a robot is the way of the next 2 s, if the robot obeys the newest command.";
 const PAD = [["\u21ba", "Turn left", 0, 1], ["\u2191", "Forward", 1, 0], ["\u2193", "Backward", -1, 0], ["\u21bb", "Turn right", 0, -1],
   ["\u25a0", "Stop the robot", 0, 0]];
 const SMALL = 560; // pixels: in a narrower view, the scan is below the world
@@ -41,7 +39,7 @@ const render = async ({model, el}) => {
     readout(instant);
     panel.show(instant);
     const index = Math.max(0, panel.view.followed());
-    scan.show(index, index && 1 + (index - 1) % LOOK.others, instant.robots[index]);
+    scan.show(index, kindOf(index), instant.robots[index]);
   };
   const panel = makePanel(root, run, model.get("speed"), makeScene(run, addDrivenTrack), () => draw());
   const {stage, pictures, form, button, slider, speed} = panel;
@@ -59,7 +57,7 @@ const render = async ({model, el}) => {
     pad.append(driver);
   }
   const readout = makeReadout(stage, run);
-  panel.addHelp(HELP + (run.drivable ? DRIVE_HELP : SEEK_HELP) + VIEW_HELP);
+  panel.addHelp(HELP + (run.drivable ? DRIVE_HELP : SEEK_HELP));
 
   // A drag moves the slider more often than the kernel can answer, so each picture of the page asks for one instant.
   const seek = time => {

@@ -1,8 +1,6 @@
 // Plays recorded runs. Each .run-player contains a run as JSON, and gets a canvas, buttons and a time line for each rule.
 const HELP = "Keys work while the mouse is here. Space plays and pauses. The arrow keys move by 0.1 s, with Shift by 1 s. Home and End go "
-  + "to the ends. B goes to the instant at which a rule broke. L goes to the next line of the log, with Shift to the one before. "
-  + "+ and \u2212 zoom, as the mouse wheel with Ctrl and two fingers do, 0 shows all, and F follows a robot. Drag to move what is "
-  + "zoomed. The dashed line in front of the robot is the way of the next 2 s, if the robot obeys the newest command.";
+  + "to the ends. B goes to the instant at which a rule broke. L goes to the next line of the log, with Shift to the one before. ";
 
 const start = async root => {
   root.classList.add("run-starting");

@@ -7,6 +7,8 @@ const AHEAD = 2; // s: the duration of the path that is drawn for the latest com
 const MET_SECONDS = 1; // s: the duration for which a robot shows a collision
 const MAX_GAP = 999; // m: larger gaps mean that there is no obstacle
 
+// Returns the number of a robot's colours: 0 for the first robot, and the others take turns.
+const kindOf = index => index && 1 + (index - 1) % LOOK.others;
 const line = points => { const path = new Path2D(); points.forEach(([x, y]) => path.lineTo(x, y)); return path; };
 const loop = points => { const path = line(points); path.closePath(); return path; };
 const disc = (x, y, radius, path = new Path2D()) => {
@@ -171,7 +173,7 @@ const drawMoment = (sheet, run, now) => {
 
 // Returns a function that draws an instant on a sheet. `addTrack(sheet, index, kind, instant)` draws a robot's track.
 const makeScene = (run, addTrack) => {
-  const kinds = run.robots.map((_, index) => index && 1 + (index - 1) % LOOK.others), addWorld = makeWorld(run);
+  const kinds = run.robots.map((_, index) => kindOf(index)), addWorld = makeWorld(run);
   return (sheet, instant) => {
     addWorld(sheet);
     run.robots.forEach(({scans}, index) => {

@@ -1,6 +1,8 @@
 // What the player and the live view have in common: heading, buttons of the view, canvas, time line and keys.
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const ZOOM_STEP = 1.5;
+const VIEW_HELP = "+ and \u2212 zoom, as the mouse wheel with Ctrl and two fingers do, 0 shows all, and F follows a robot. Drag to move what "
+  + "is zoomed. The dashed line in front of a robot is the way of the next 2 s, if the robot obeys the newest command.";
 
 // Adds the parts to `root`. `factor` is the initial speed, `draw(sheet, instant)` draws an instant, and `redraw` shows the
 // current one again.
@@ -45,10 +47,11 @@ const makePanel = (root, run, factor, draw, redraw) => {
     update();
     return update;
   };
+  // Adds `text`, followed by the keys and gestures of the view.
   const addHelp = text => {
     const help = make("details", {}, stage);
     make("summary", {text: "Keys"}, help);
-    make("span", {text}, help);
+    make("span", {text: text + VIEW_HELP}, help);
   };
   const keys = {"+": () => view.zoomAt(ZOOM_STEP), "=": () => view.zoomAt(ZOOM_STEP), "-": () => view.zoomAt(1 / ZOOM_STEP),
     "0": view.whole, f: view.follow, F: view.follow};
