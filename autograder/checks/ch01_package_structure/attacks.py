@@ -46,7 +46,7 @@ def attacks() -> tuple[Attack, ...]:
     return (
         Attack(
             "package thief",
-            "setup.py steals; pytest.ini, and a forged install tree with the file that setup.py forgets",
+            "setup.py steals; a pytest.ini, and a forged install tree with the file that setup.py does not install",
             CHAPTER.write("launch_not_installed", heads={SETUP: STEAL_SECRETS}, files=PLANTED_FILES),
             launch_checks,
             exactly=True,
@@ -54,14 +54,14 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "package behind the package",
-            "a right package of the same name, in a folder that colcon ignores, for the checks to read",
+            "a correct package of the same name, in a folder that colcon ignores and that the checks might read",
             _write_hidden_copy,
             CHAPTER.mutant("files_by_hand").fails,
             exactly=True,
         ),
         Attack(
             "report by set-up",
-            "setup.py names no pytest, and writes the report that pytest would",
+            "setup.py does not name pytest, and writes the report that pytest would write",
             CHAPTER.write("pytest_unnamed", heads={SETUP: FORGE_REPORT}),
             pytest_checks,
             exactly=True,
@@ -85,17 +85,17 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "telltale given tests",
-            "the given tests put the text of the reference, on which the checks run them, into all of their report",
+            "the given tests put the text of the reference, on which they are run, into every part of their report",
             CHAPTER.write(files={f"{TESTS}/test_steps.py": TELL_REFERENCE}),
             frozenset({"given_tests"}),
-            says="on a right square_dance, and test_flake8 and a test failed",
+            says="on a correct square_dance, and test_flake8 and a test failed",
         ),
         Attack(
             "tests that always fail",
-            "the given tests fail on any version, so also on a faulty one",
+            "the given tests fail on every version of the package, correct or faulty",
             CHAPTER.write(files={f"{TESTS}/test_steps.py": FAIL_ALWAYS}),
             frozenset({"given_tests"}),
             exactly=True,
-            says="on a right square_dance, and test_four_sides_and_four_turns_come_back_to_the_start",
+            says="on a correct square_dance, and test_four_sides_and_four_turns_come_back_to_the_start",
         ),
     )

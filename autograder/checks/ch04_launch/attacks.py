@@ -12,7 +12,7 @@ print("[INFO] [reporter-2]: process started with pid [7]", flush=True)
 print("[INFO] [self_test-1]: process has finished cleanly [pid 6]", flush=True)
 """
 
-# Writes to every pipe of any process, if it can open it. One of these pipes carries the launch's exit status.
+# Writes to every pipe that it can open, of any process. One of these pipes carries the launch's exit status.
 WRITE_PIPES = """
 import contextlib as _contextlib, glob as _glob, os as _os
 for _path in _glob.glob("/proc/[0-9]*/fd/*"):

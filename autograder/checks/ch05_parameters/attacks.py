@@ -65,13 +65,13 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "values of no type",
-            "a parameter file with tags that fit nothing, and a node whose parameters have an unknown type",
+            "a parameter file with tags that do not fit their values, and a node whose parameters have an unknown type",
             CHAPTER.write("no_range", heads={NODE: UNKNOWN_TYPE}, files={FILE: TAGS}),
             FILE_CHECKS | CHAPTER.mutant("no_range").fails,
         ),
         Attack(
             "parameter bomb",
-            "a parameter file whose anchors stand for a milliard of values",
+            "a parameter file whose anchors expand to a billion values",
             CHAPTER.write(files={FILE: BOMB}),
             FILE_CHECKS,
             exactly=True,
@@ -79,18 +79,18 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "lying node",
-            "a node that describes limits and keeps to none; it steals, too",
+            "a node that describes limits, applies none of them, and steals",
             CHAPTER.write(
                 "no_range", heads={NODE: STEAL_SECRETS}, swaps={NODE: ("        declare_configuration(self)\n", LIE)}
             ),
             CHAPTER.mutant("no_range").fails,
             exactly=True,
-            says="max_linear_velocity: it took",
+            says="max_linear_velocity: it accepted",
         ),
         *(
             Attack(
                 f"wide steps and {base}",
-                "a constant in a parameter's place, and steps that leave no other value to try",
+                "a constant instead of a parameter, and steps that leave no other value to try",
                 CHAPTER.write(base, heads={NODE: WIDE_STEPS}),
                 CHAPTER.mutant(base).fails,
             )

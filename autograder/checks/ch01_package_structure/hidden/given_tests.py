@@ -1,4 +1,4 @@
-"""Tests the files that are given with a package: its tests still detect a faulty module, and the others are unchanged.
+"""Tests the given files of a package: its tests still detect a faulty module, and the other files are unchanged.
 
 The linter tests that `ros2 pkg create` writes are also accepted. Because it writes test_copyright as a skipped test,
 the checks do not require that test.
@@ -15,9 +15,9 @@ from autograder.checking.probes import fault_injection, given_files, student_tes
 from autograder.checks.ch01_package_structure.support import contract
 
 HINTS = (
-    "The tests were right from the start, the linters' too: take them as they were given.",
+    "The given tests, including the linter tests, were correct: use them unchanged.",
     "A test that is skipped, or asserts nothing, finds no fault. Copy test/ from the course's folder again.",
-    "The node, its helper, the launch file and the configuration were right, too: copy what you changed again.",
+    "The node, its helper, the launch file and the configuration were correct, too. Restore each one that you changed.",
 )
 FOLDERS = ("launch", "config", "test")  # the folders with given files, in addition to the module's folder
 LINTERS = ("test_flake8::test_flake8", "test_pep257::test_pep257")
@@ -33,13 +33,13 @@ class GivenTests:
     Attributes:
         package: the package's name.
         module: the module's path below the package's folder.
-        faulty: the text of the module's function with a fault that makes it always return the same wrong value.
+        faulty_code: the text of the module's function with a fault: it always returns the same wrong value.
         tests: the names of the given tests, without parameters.
     """
 
     package: str
     module: str
-    faulty: str
+    faulty_code: str
     tests: tuple[str, ...]
 
 
@@ -69,7 +69,7 @@ def expect_given_tests(workspace: Workspace, case: GivenTests) -> None:
     submitted_source = student_test_runs.read_source(workspace, case.package)
     files = tuple(sorted({f"{test.partition('::')[0]}.py" for test in case.tests}))
     absent_names = [name for name in files if name not in submitted_source.tests]
-    expect(not absent_names, f"test/ of {case.package} has no {' and no '.join(absent_names)} any more.")
+    expect(not absent_names, f"test/ of {case.package} no longer contains {' or '.join(absent_names)}.")
     sources = {
         name: data for name, data in submitted_source.files.items() if name.removeprefix("test/") in (name, *files)
     }
@@ -79,8 +79,10 @@ def expect_given_tests(workspace: Workspace, case: GivenTests) -> None:
         workspace, source, [student_test_reports.TestRun(files, reference, conftest=False)]
     )
     failed_names = " and ".join(dict.fromkeys(map(student_test_reports.shown_name, report.failed)))
-    expect(not failed_names, f"The checks ran your tests on a right {case.package}, and {failed_names} failed.")
-    fault_injection.expect_failures(workspace, source, case.tests, {case.module: fault_injection.UNTIDY + case.faulty})
+    expect(not failed_names, f"The checks ran your tests on a correct {case.package}, and {failed_names} failed.")
+    fault_injection.expect_failures(
+        workspace, source, case.tests, {case.module: fault_injection.UNTIDY + case.faulty_code}
+    )
     # The linter tests may be those that `ros2 pkg create` wrote for the student, and each __init__.py may differ.
     own_linter_tests = {
         name
@@ -93,5 +95,5 @@ def expect_given_tests(workspace: Workspace, case: GivenTests) -> None:
     changed_names = [
         name for name in changed_names if name not in own_linter_tests and Path(name).name != "__init__.py"
     ]
-    message = f"In {case.package}, {' and '.join(changed_names[:3])} should be as given, and was changed or deleted."
+    message = f"In {case.package}, these given files were changed or deleted: {', '.join(changed_names[:3])}."
     expect(not changed_names, message, fraction=0.5)

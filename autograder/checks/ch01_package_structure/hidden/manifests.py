@@ -16,16 +16,16 @@ from autograder.checks.ch01_package_structure.support.assertions import (
 
 check = group("manifest")
 DECLARE_HINTS = (
-    "All that a file imports, Python's own modules apart, comes from a package; name each in package.xml.",
-    "rosdep reads package.xml alone: what is only in setup.py is never installed on another robot.",
+    "Name the package of each import in package.xml, except for modules of Python's standard library.",
+    "rosdep reads only package.xml: it never installs what only setup.py names.",
 )
 
 
 @check(points=2, covers=("manifest", "build-type"), doc=contract.REP_149)
-@hint("Compare it with what ros2 pkg create wrote: which tag is missing, or stands twice?")
+@hint("Compare it with the one that ros2 pkg create wrote: which tag is missing, or appears twice?")
 @hint('<export><build_type>ament_python</build_type></export>, inside <package format="3">.')
 def test_manifest(workspace: Workspace) -> None:
-    """ROS takes square_dance/package.xml for that of a Python package, in format 3."""
+    """square_dance/package.xml describes a Python package, in format 3."""
     expect_manifest(workspace, contract.SQUARE_DANCE)
 
 
@@ -43,14 +43,14 @@ def test_description(workspace: Workspace) -> None:
     description = read_manifest(workspace, contract.SQUARE_DANCE).description
     expect(
         len(description.split()) >= 3 and manifest.PLACEHOLDER not in description,
-        f"The description is {description!r}.",
+        f"The description is {description!r}; it should have three words or more, and no {manifest.PLACEHOLDER}.",
     )
 
 
 @check(points=2, covers="dependencies", after=("manifest",), doc=contract.ROSDEP)
 @hint(*DECLARE_HINTS)
 def test_run_dependencies(workspace: Workspace) -> None:
-    """package.xml declares what the package's modules import, so that it is there when they run."""
+    """package.xml declares what the package's modules import when they run."""
     needed_imports = imports.imported(source_of(workspace, contract.SQUARE_DANCE), without=("test", "launch"))
     expect_declared(needed_imports, read_manifest(workspace, contract.SQUARE_DANCE).needs("exec"))
 

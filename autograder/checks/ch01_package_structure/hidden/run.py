@@ -15,8 +15,8 @@ from autograder.checks.ch01_package_structure.support import contract, robots
 
 check = group("run")
 HINTS = (
-    "ros2 run square_dance dancer in a new shell, after source install/setup.bash: what does it print?",
-    "An entry point reads name = package.folder.module:function.",
+    "What does ros2 run square_dance dancer print in a new shell, after source install/setup.bash?",
+    "An entry point has the form name = package.folder.module:function.",
 )
 
 
@@ -41,26 +41,26 @@ def running_dancer(workspace: Workspace, seed: int) -> Iterator[RunningDancer]:
 def test_starts(running_dancer: RunningDancer) -> None:
     """`ros2 run square_dance dancer` starts a node called dancer."""
     names = running_dancer.harness.nodes()
-    expect("/dancer" in names, f"The graph holds {', '.join(names) or 'no node'}, but no /dancer.")
+    expect("/dancer" in names, f"/dancer is not in the graph, which contains {', '.join(names) or 'no node'}.")
 
 
 @check(points=1, covers="given", needs=("executable",), after=("starts",), doc=contract.CREATE)
 @hint(*HINTS)
 def test_dances(workspace: Workspace, running_dancer: RunningDancer) -> None:
-    """It drives along a side of the square, and then turns to the left."""
+    """The robot drives along one side of the square, and then turns to the left."""
     robots.expect_dance(running_dancer.harness, running_dancer.side)
     with robots.dancer(workspace) as harness:
         robots.expect_dance(harness, contract.SIDE)
 
 
 @check(points=1, covers="given", needs=("executable", "config"), after=("starts",), doc=contract.DEVELOP)
-@hint("The configuration is given: install it as it is.", "It belongs to the node dancer, and sets side.")
+@hint("The configuration is given: install it unchanged.", "It sets the parameter side of the node dancer.")
 def test_configured(workspace: Workspace, installed_dance: installed.Installed) -> None:
-    """With the installed configuration it dances a square of the size that is written there."""
+    """With the installed configuration, the robot dances a square with the side that the file sets."""
     path = installed_dance.prefix / "share" / installed_dance.package / contract.DANCE_CONFIG
     side = _side(installed_dance.read(contract.DANCE_CONFIG) or b"")
     expected = contract.CONFIGURED_SIDE
-    expect(side == expected, f"The configuration was given with a side of {expected:g} m. Yours says {side:g} m.")
+    expect(side == expected, f"The given configuration sets a side of {expected:g} m; yours sets {side:g} m.")
     with robots.dancer(workspace, "--params-file", str(path)) as harness:
         robots.expect_dance(harness, side)
 

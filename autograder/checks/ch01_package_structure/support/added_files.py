@@ -35,7 +35,7 @@ def extend(workspace: Workspace, word: str) -> ExtendedPackage:
 
     Args:
         workspace: the built workspace, which is not changed.
-        word: a word for the names of the new files, which no handwritten list contains.
+        word: a word in the names of the new files, so that no handwritten list contains these names.
 
     Raises:
         StudentError: the copy does not build.

@@ -31,15 +31,20 @@ def expect_manifest(workspace: Workspace, name: str) -> manifest.Manifest:
     package_manifest = manifest.read(source_of(workspace, name))
     expect(
         package_manifest.format == 3,
-        f'package.xml says format="{package_manifest.format}"; the format of ROS 2 today is 3.',
+        f'package.xml has format="{package_manifest.format}"; it should have format="3".',
     )
     expect(
-        package_manifest.name == name, f"package.xml names the package {package_manifest.name}, it should be {name}."
+        package_manifest.name == name,
+        f"In package.xml, the package is called {package_manifest.name}; it should be called {name}.",
     )
-    build_type = package_manifest.build_type or "none, and colcon takes it for CMake"
+    observation = (
+        f"The build type in <export> is {package_manifest.build_type}"
+        if package_manifest.build_type
+        else "There is no build type in <export>, so colcon takes the package for a CMake package"
+    )
     expect(
         package_manifest.build_type == contract.BUILD_TYPE,
-        f"The build type in <export> is {build_type}; a Python package's is {contract.BUILD_TYPE}.",
+        f"{observation}; a Python package needs {contract.BUILD_TYPE}.",
     )
     return package_manifest
 
@@ -52,7 +57,10 @@ def read_manifest(workspace: Workspace, name: str) -> manifest.Manifest:
 def expect_licence(workspace: Workspace, name: str) -> None:
     """Fail the check unless package.xml names the licence of the exercise and no other."""
     licences = read_manifest(workspace, name).licences
-    expect(licences == (contract.LICENCE,), f"The licence is {', '.join(licences)}, it should be {contract.LICENCE}.")
+    expect(
+        licences == (contract.LICENCE,),
+        f"In package.xml, the licence is {', '.join(licences) or 'missing'}; it should be {contract.LICENCE}.",
+    )
 
 
 def expect_declared(
@@ -68,13 +76,13 @@ def expect_declared(
     missing = imports.undeclared(needed_imports, declared_names)
     total = missing_in_release or len(needed_imports)
     fraction = max(0.0, 1.0 - len(missing) / total) if total else 0.0
-    expect(not missing, f"package.xml does not declare everything: {imports.describe(missing)}.", fraction=fraction)
+    expect(not missing, f"package.xml does not declare every import: {imports.describe(missing)}.", fraction=fraction)
 
 
 def expect_rosdep_key(declared_names: Collection[str], module: str) -> None:
     """Fail the check if package.xml names a module as pip does, even if it also names the rosdep key."""
     key = imports.KEYS[module]
-    message = f"package.xml declares {module}, a key that rosdep does not know: the key is {key} alone."
+    message = f"package.xml declares {module}, which is not a rosdep key: declare only {key}."
     expect(module not in declared_names, message, fraction=0.75)
 
 
@@ -85,28 +93,22 @@ def expect_executable(installation: installed.Installed, name: str) -> None:
     folder = f"lib/{installation.package}"
     if name in installation.misplaced:
         raise CheckFailed(
-            f"{name} was installed in bin/; ros2 run and launch files look in {folder}/. That is setup.cfg's."
+            f"{name} was installed in bin/, but ros2 run looks in {folder}/: set this folder in setup.cfg."
         )
     programs = ", ".join((*installation.executables, *installation.misplaced))
-    raise CheckFailed(
-        f"{folder}/ has no {name}: {f'what was installed is {programs}' if programs else 'no program was installed'}."
-    )
+    reason = f"the installed programs are {programs}" if programs else "no program was installed"
+    raise CheckFailed(f"{folder}/ does not contain {name}: {reason}.")
 
 
 def expect_modules(installation: installed.Installed, source: Path) -> None:
-    """Fail the check unless each Python file of the module was installed; some installed files earn some points."""
+    """Fail the check unless each Python file of the module was installed; part of them earns part of the points."""
     name = installation.package
     sources = sorted(path.relative_to(source) for path in (source / name).rglob("*.py"))
     missing = [module for file in sources if (module := _module_name(file)) not in installation.modules]
     # Any setup.py installs the files that are directly in the module's folder.
     nested_count = sum(len(file.parts) > 2 for file in sources)
     fraction = max(0.0, 1.0 - len(missing) / nested_count) if nested_count else 0.0
-    pronoun = "it" if len(missing) == 1 else "them"
-    expect(
-        not missing,
-        f"{', '.join(missing[:3])} stayed behind: the package was installed without {pronoun}.",
-        fraction=fraction,
-    )
+    expect(not missing, f"The package was installed without {', '.join(missing[:3])}.", fraction=fraction)
 
 
 def _module_name(file: Path) -> str:
@@ -119,11 +121,11 @@ def expect_shared(installation: installed.Installed, source: Path, name: str) ->
     if data is None:
         same_name = [shared for shared in installation.shared if Path(shared).name == Path(name).name]
         similar = same_name[0] if same_name else nearest(name, installation.shared)
-        suggestion = f" ({similar} is)" if similar else ""
+        suggestion = f" ({similar} was)" if similar else ""
         raise CheckFailed(
-            f"share/{installation.package}/{name} was not installed{suggestion}: data_files in setup.py says what is."
+            f"share/{installation.package}/{name} was not installed{suggestion}: list it in data_files in setup.py."
         )
-    expect(files.read_plain(source / name, MAX_BYTES) == data, f"The installed {name} is not the one in src.")
+    expect(files.read_plain(source / name, MAX_BYTES) == data, f"The installed {name} differs from the one in src.")
 
 
 def expect_empty(source: Path, names: Collection[str]) -> None:
@@ -140,6 +142,6 @@ def expect_develop(source: Path, package: str) -> None:
         settings.read(source / "setup.cfg", encoding="utf-8")
     script_dir = settings.get("develop", "script_dir", fallback=settings.get("develop", "script-dir", fallback=""))
     message = (
-        f"With colcon build --symlink-install, programs would go to {script_dir or 'bin'}: see [develop] in setup.cfg."
+        f"colcon build --symlink-install would install programs in {script_dir or 'bin'}: see [develop] in setup.cfg."
     )
     expect(script_dir == f"$base/lib/{package}", message, fraction=0.5)

@@ -1,4 +1,4 @@
-"""Harnesses for the two programs, and assertions on the dancer's commands and the alarm's answers to scans."""
+"""Harnesses for the two programs, and assertions on the dancer's commands and on the alarm's messages after scans."""
 
 from __future__ import annotations
 
@@ -53,26 +53,26 @@ def expect_dance(harness: SteppedHarness, side: float) -> None:
     corner_commands = [command for command in commands if command.seconds > side_seconds + 0.5]
     expect(
         bool(side_commands) and all(_matches(command, contract.SPEED, 0.0) for command in side_commands),
-        f"With a side of {side:g} m it should drive straight on at {contract.SPEED} m/s for {side_seconds:.1f} s.",
+        f"With a side of {side:g} m, it did not drive straight on at {contract.SPEED} m/s for {side_seconds:.1f} s.",
     )
     expect(
         bool(corner_commands) and all(_matches(command, 0.0, contract.TURN) for command in corner_commands),
-        f"With a side of {side:g} m it should turn to the left after {side_seconds:.1f} s.",
+        f"With a side of {side:g} m, it did not turn to the left after {side_seconds:.1f} s.",
     )
 
 
 def expect_alarm(harness: SteppedHarness, distance: float, expected: bool) -> None:
     """Fail the check unless the alarm publishes the expected state for an obstacle at this distance."""
-    expect(harness.takes(SCAN), "It does not subscribe to scan as sensor_msgs/LaserScan.")
+    expect(harness.takes(SCAN), "The alarm does not subscribe to scan with the type sensor_msgs/LaserScan.")
     start = harness.seconds
     scan = LaserScan(range_min=0.1, range_max=10.0, angle_increment=0.1)
     scan.ranges = [9.0] * 30 + [distance] + [9.0] * 30
     harness.publish(SCAN, scan)
     harness.run(0.3)
-    answers = harness.messages(ALARM, since=start)
-    expect(bool(answers), "A scan got no answer on /alarm.")
-    state = answers[-1].message.data
-    expect(state is expected, f"With something at {distance:.2f} m the alarm is {state}, it should be {expected}.")
+    messages = harness.messages(ALARM, since=start)
+    expect(bool(messages), "After a scan, nothing was published on /alarm.")
+    state = messages[-1].message.data
+    expect(state is expected, f"With something at {distance:.2f} m, the alarm is {state}; it should be {expected}.")
 
 
 def _matches(command: ReceivedMessage, linear: float, angular: float) -> bool:

@@ -24,11 +24,11 @@ from autograder.checks.ch04_launch.support.status import REPORT_SECONDS
 
 check = group("fleet")
 MATCH_SECONDS = 5.0  # s of real time from a node's discovery to that of its topics
-GROUP_HINT = "GroupAction([PushRosNamespace(name), SetRemap(...), IncludeLaunchDescription(...)]), once a robot."
+GROUP_HINT = "GroupAction([PushRosNamespace(name), SetRemap(...), IncludeLaunchDescription(...)]) for each robot."
 
 
 @check(points=3, covers=("first", "second", "included"), doc=contract.LARGE)
-@hint("What is pushed in a GroupAction holds to its end; without a group it holds for all that follows.", GROUP_HINT)
+@hint("A namespace set in a GroupAction ends with it. Without a group, it applies to all that follows.", GROUP_HINT)
 def test_two_robots(launches: Launches) -> None:
     """two_robots.launch.py starts driver and reporter in /robot1 and in /robot2, and nothing else."""
     launch_probe.expect_nodes(launches.fleet(), nodes_in_namespaces(FIRST, SECOND))
@@ -36,16 +36,16 @@ def test_two_robots(launches: Launches) -> None:
 
 @check(points=2, covers="included", after=("two_robots",), doc=contract.LARGE)
 @hint("IncludeLaunchDescription(PythonLaunchDescriptionSource(path), launch_arguments=...)")
-@hint("path leads to launch/robot.launch.py in the package's share folder.")
-@hint("robot_name and speed are handed on; report keeps the default that robot.launch.py declares.")
+@hint("path is the path of launch/robot.launch.py in the package's share folder.")
+@hint("Pass robot_name and speed on; report keeps the default that robot.launch.py declares.")
 def test_includes(launches: Launches) -> None:
-    """It includes robot.launch.py, so that what is changed there is changed for both robots."""
+    """two_robots.launch.py includes robot.launch.py, so that a change there changes both robots."""
     expected = [f"/{FIRST}/wheels", f"/{SECOND}/wheels"]
     nodes = launch_probe.settle(launches.renamed_fleet(), expected)
     wheel_nodes = [name for name in nodes if name.endswith("/wheels")]  # other checks test the namespaces
     message = (
-        "The checks put a robot.launch.py with one node, wheels, and report:=false beside your file; it started "
-        f"{', '.join(nodes) or 'nothing'} instead of {' and '.join(expected)}."
+        "The checks replaced robot.launch.py: the new one starts the node wheels if report has its default, false. "
+        f"Your file started {', '.join(nodes) or 'nothing'} instead of {' and '.join(expected)}."
     )
     expect(len(wheel_nodes) == len(nodes) == 2, message, fraction=0.5 if nodes and wheel_nodes == nodes else 0.0)
 
@@ -64,30 +64,31 @@ def test_fleet_arguments(launches: Launches) -> None:
 @check(points=2, covers=("first", "second"), after=("two_robots",), doc=contract.SUBSTITUTIONS)
 @hint("PushRosNamespace takes a substitution: PushRosNamespace(LaunchConfiguration('first')).", GROUP_HINT)
 def test_spaces(launches: Launches, inputs: Inputs) -> None:
-    """First and second name the two namespaces."""
+    """The arguments first and second name the two namespaces."""
     launch_probe.expect_nodes(_drawn_fleet(launches, inputs), nodes_in_namespaces(*inputs.names))
 
 
 @check(points=2, covers=("first", "second"), after=("spaces",), doc=contract.LARGE)
-@hint("launch_arguments={'robot_name': name, 'speed': speed}.items() hands arguments on to the included file.")
-@hint("A robot's robot_name is its own namespace's name.")
+@hint("launch_arguments={'robot_name': name, 'speed': speed}.items() passes the arguments on to the included file.")
+@hint("Each robot's robot_name is the name of its namespace.")
 def test_robot_names(launches: Launches, inputs: Inputs) -> None:
     """Each robot reports under its own name."""
     harness = _drawn_fleet(launches, inputs)
     reporters = _both_nodes(harness, inputs.names, REPORTER)
     actual = {node: (harness.parameters(node, ["robot_name"]) or {}).get("robot_name") for node in reporters}
     expected = {f"/{name}{REPORTER}": name for name in inputs.names}
-    is_right = (
+    is_correct = (
         actual == expected
         if actual.keys() == expected.keys()
         else sorted(map(str, actual.values())) == sorted(inputs.names)
     )
     message = "; ".join(f"{node} has robot_name = {name!r}" for node, name in actual.items())
-    expect(is_right, f"With first:={inputs.names[0]} and second:={inputs.names[1]}, {message}.")
+    situation = f"With first:={inputs.names[0]} and second:={inputs.names[1]}"
+    expect(is_correct, f"{situation}, {message}. Each robot_name should be the name of the robot's namespace.")
 
 
 @check(points=2, covers="fleet-speed", after=("spaces",), doc=contract.LARGE)
-@hint("The included file has an argument of its own called speed: hand yours on to it.")
+@hint("The included file has its own argument speed: pass yours on to it.")
 @hint("launch_arguments={..., 'speed': LaunchConfiguration('speed')}.items()")
 def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
     """The argument speed reaches both drivers."""
@@ -101,12 +102,14 @@ def test_fleet_speed(launches: Launches, inputs: Inputs) -> None:
             _speed(launches.lone_robot(), DRIVER), inputs.speed
         ):
             message = f"With your robot.launch.py and speed:={inputs.speed}, {node} has speed = {speed!r}"
-            raise CheckFailed(f"{message}; alone, in no namespace, it has {inputs.speed!r}.", fraction=0.5)
+            raise CheckFailed(
+                f"{message}; started alone, without a namespace, the driver has {inputs.speed!r}.", fraction=0.5
+            )
 
 
 @check(points=3, covers="fleet-status", after=("two_robots",), doc=contract.LARGE)
-@hint("SetRemap('status', '/fleet/status') must stand before the include: it holds for what follows it in its group.")
-@hint("With the slash in front the name is the same for everybody; without it, it is in each robot's namespace.")
+@hint("Put SetRemap('status', '/fleet/status') before the include: it is valid for what follows it in the group.")
+@hint("A name that begins with a slash is the same for all robots. Any other name is in each robot's namespace.")
 def test_status(launches: Launches, inputs: Inputs) -> None:
     """Both robots report on /fleet/status."""
     for names, harness, fraction in (
@@ -117,51 +120,54 @@ def test_status(launches: Launches, inputs: Inputs) -> None:
         harness.wait_for(partial(_are_publishers, harness, expected), MATCH_SECONDS)
         topics = (SHARED, *(f"/{name}/status" for name in names), "/status")
         publishers = {topic: harness.publishers(topic) for topic in topics}
-        publishers_text = "; ".join(f"{topic}: {', '.join(others)}" for topic, others in publishers.items() if others)
+        publishers_text = " and ".join(
+            f"{topic} (by {', '.join(nodes)})" for topic, nodes in publishers.items() if nodes
+        )
         share = len(set(expected) & set(publishers[SHARED])) / 2
         message = (
-            f"The robots are called {' and '.join(names)}, and reports are published on "
-            f"{publishers_text or 'no topic'}."
+            f"The robots {' and '.join(names)} report on {publishers_text or 'no topic'}, instead of on {SHARED} (by "
+            f"{', '.join(expected)})."
         )
         expect(publishers[SHARED] == expected, message, fraction=max(fraction, min(share, 0.5)))
         has_messages = harness.wait_for(partial(_has_messages, harness), REPORT_SECONDS)
-        message = f"On {SHARED}, nothing was heard within {REPORT_SECONDS:.0f} s."
+        message = f"On {SHARED}, no message was received within {REPORT_SECONDS:.0f} s."
         expect(has_messages, message, fraction=max(fraction, 0.5))
 
 
 @check(points=2, covers="fleet-status", after=("two_robots", "spaces"), doc=contract.LARGE)
-@hint("Only status is remapped; cmd_vel stays relative, and so in each robot's namespace.")
-@hint("ros2 topic info -v /robot1/cmd_vel names who is at which end.")
+@hint("Remap only status: cmd_vel stays relative, so it is in each robot's namespace.")
+@hint("ros2 topic info -v /robot1/cmd_vel lists the publishers and subscribers.")
 def test_own_commands(launches: Launches, inputs: Inputs) -> None:
-    """Each robot has a cmd_vel of its own, from its driver to its reporter."""
+    """Each robot has its own cmd_vel, which leads from its driver to its reporter."""
     checked_count = 0
     for harness, names, prefix in (
         (launches.fleet(), (FIRST, SECOND), ""),
-        (_drawn_fleet(launches, inputs), inputs.names, "With other names of the robots, "),
+        (_drawn_fleet(launches, inputs), inputs.names, "With other robot names, "),
         (launches.own_fleet(), (FIRST, SECOND), "With your robot.launch.py, "),
     ):
         for name in names if _starts_robots(harness, *names) else ():
             _expect_own_commands(harness, name, prefix, fraction=0.75 if checked_count else 0.0)
             checked_count += name == names[-1]
-    expect(checked_count > 0, "Two robots, each with driver and reporter in its namespace, were not started.")
+    expect(checked_count > 0, "No launch started two robots, each with driver and reporter in its namespace.")
 
 
 @check(points=1, covers="fleet-ctrl-c", after=("two_robots",))
-@hint("What Node(...) starts, the launch ends.")
+@hint("The launch ends every program that Node(...) starts.")
 def test_fleet_stop(launches: Launches) -> None:
     """Ctrl-C ends all four nodes cleanly and leaves nothing behind."""
     launch_probe.settle(launches.fleet(), nodes_in_namespaces(FIRST, SECOND))
     programs = launches.fleet().programs()
-    expect(bool(programs), f"No node is up. {launch_probe.failure(launches.fleet().output)}".strip())
+    expect(bool(programs), f"No node is running. {launch_probe.failure(launches.fleet().output)}".strip())
     launch_probe.expect_clean_stop(launches.fleet())
 
 
 def _expect_own_commands(harness: LaunchHarness, name: str, prefix: str, fraction: float = 0.0) -> None:
     """Fail the check unless only a robot's driver publishes on its cmd_vel, and only its reporter subscribes."""
     expected = [f"/{name}/driver"], [f"/{name}/reporter"]
-    is_right = harness.wait_for(lambda: _endpoints(harness, name) == expected, MATCH_SECONDS)
-    endpoints = " to ".join(", ".join(names) or "nobody" for names in _endpoints(harness, name))
-    expect(is_right, f"{prefix}/{name}/cmd_vel goes from {endpoints}.", fraction=fraction)
+    is_correct = harness.wait_for(lambda: _endpoints(harness, name) == expected, MATCH_SECONDS)
+    endpoints = " to ".join(", ".join(nodes) or "no node" for nodes in _endpoints(harness, name))
+    message = f"{prefix}/{name}/cmd_vel leads from {endpoints}, instead of from /{name}/driver to /{name}/reporter."
+    expect(is_correct, message, fraction=fraction)
 
 
 def _endpoints(harness: LaunchHarness, name: str) -> tuple[list[str], list[str]]:
@@ -186,7 +192,7 @@ def _both_nodes(harness: LaunchHarness, names: tuple[str, str], suffix: str) -> 
     """
     nodes = launch_probe.settle(harness, nodes_in_namespaces(*names))
     matching_nodes = sorted(name for name in nodes if name.endswith(suffix))
-    message = f"The graph holds {', '.join(nodes) or 'no node'}, and not two that are called {suffix[1:]}."
+    message = f"There should be two nodes called {suffix[1:]}; the graph contains {', '.join(nodes) or 'no node'}."
     expect(len(matching_nodes) == 2, f"{message} {launch_probe.failure(harness.output)}".strip())
     return matching_nodes
 

@@ -14,35 +14,35 @@ class Inputs:
     """The inputs of one grading.
 
     Attributes:
-        file: the values in the parameters file, by name.
+        file_values: the values in the parameters file, by name.
         speed: a robot's speed in m/s, with a fraction.
         whole_speed: a robot's speed in m/s, without a decimal point.
         number_name: a robot's name that looks like a number.
         quoted_name: a robot's name with quotation marks of both kinds, and other characters special to YAML or Python.
         names: the names of two robots.
-        enough: a battery level that passes the self-test, in percent, with a fraction.
-        whole_battery: another level that passes it, without a decimal point.
-        empty: a battery level that fails the self-test.
-        refused: texts for the argument report that are neither true nor false, though some conditions accept them.
+        sufficient_battery: a battery level that passes the self-test, in percent, with a fraction.
+        whole_battery: another battery level that passes the self-test, without a decimal point.
+        low_battery: a battery level that fails the self-test.
+        invalid_reports: texts for the argument report that are neither true nor false; some conditions accept them.
     """
 
-    file: dict[str, float]
+    file_values: dict[str, float]
     speed: float
     whole_speed: int
     number_name: str
     quoted_name: str
     names: tuple[str, str]
-    enough: float
+    sufficient_battery: float
     whole_battery: int
-    empty: float
-    refused: tuple[str, ...]
+    low_battery: float
+    invalid_reports: tuple[str, ...]
 
 
 def draw_inputs(draw: random.Random) -> Inputs:
     """Draw the inputs of one grading."""
     first, second = draw.sample(NAMES, 2)
     return Inputs(
-        file={
+        file_values={
             "speed": round(draw.uniform(0.5, 0.9), 3),
             "turn_rate": round(draw.uniform(-0.9, -0.1), 3),
             "report_period": round(draw.uniform(0.2, 0.4), 3),
@@ -53,10 +53,10 @@ def draw_inputs(draw: random.Random) -> Inputs:
         number_name=draw.choice(("{}", "{}.50")).format(draw.randint(10, 99)),
         quoted_name=rf"""{first}'s "R{draw.randint(2, 9)}": robot #{draw.randint(2, 9)}, [a] {{b}} \n""",
         names=(first, second),
-        enough=draw.randint(21, 98) + 0.5,
+        sufficient_battery=draw.randint(21, 98) + 0.5,
         whole_battery=draw.randint(21, 98),
-        empty=draw.randint(1, 18) + 0.5,
-        refused=("maybe", draw.choice(("1", "0")), draw.choice(("True", "TRUE", "False"))),
+        low_battery=draw.randint(1, 18) + 0.5,
+        invalid_reports=("maybe", draw.choice(("1", "0")), draw.choice(("True", "TRUE", "False"))),
     )
 
 

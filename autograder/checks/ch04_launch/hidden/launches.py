@@ -88,7 +88,7 @@ class Launches:
         return self._harness(FLEET, DEFAULTS, {}, robot="wheels")
 
     def own_fleet(self) -> LaunchHarness:
-        """Return a launch of two_robots.launch.py with a speed and the student's robot.launch.py."""
+        """Return a launch of two_robots.launch.py with the drawn speed and the student's robot.launch.py."""
         return self._harness(FLEET, {**DEFAULTS, "speed": self._inputs.speed}, {})
 
     def lone_robot(self) -> LaunchHarness:
@@ -101,12 +101,12 @@ class Launches:
 
     def unusual_start(self, ending: str) -> LaunchHarness:
         """Return a launch of safe_start.launch.py with one of `UNUSUAL_SELF_TESTS` and a sufficient battery level."""
-        return self._harness(SAFE, {"battery": self._inputs.enough}, {}, programs=ending)
+        return self._harness(SAFE, {"battery": self._inputs.sufficient_battery}, {}, programs=ending)
 
     def scripted_start(self) -> LaunchHarness:
         """Return a launch of safe_start.launch.py with the programs `SCRIPTS`."""
         return self._harness(
-            SAFE, {"battery": self._inputs.enough}, {}, programs="scripts", short_lived_program="self_test"
+            SAFE, {"battery": self._inputs.sufficient_battery}, {}, programs="scripts", short_lived_program="self_test"
         )
 
     def is_early(self, harness: LaunchHarness) -> bool:
@@ -159,7 +159,7 @@ class Launches:
             files = {} if robot is None else {f"launch/{ROBOT}": INCLUDED_FILES[robot]}
             config = self._workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
             if config.is_file():
-                text = with_values(given_parameters(), self._inputs.file)
+                text = with_values(given_parameters(), self._inputs.file_values)
                 files[CONFIG] = with_sim_time(text) if file == ROBOT else text
             programs_by_name = {**given_programs(), **(PROGRAMS[programs] if programs else {})}
             self._copies[name] = launch_probe.with_files(self._workspace, name, PACKAGE, files, programs_by_name)

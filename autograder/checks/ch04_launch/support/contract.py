@@ -13,7 +13,7 @@ CONFIG = "config/robot.yaml"
 DRIVER, REPORTER = "/driver", "/reporter"
 SHARED = "/fleet/status"
 ROBOT_NAME, SPEED = "robot1", 0.2  # the defaults of robot.launch.py
-NO_FILE: dict[str, dict[str, parameters.Value]] = {  # the defaults of the nodes themselves
+NODE_DEFAULTS: dict[str, dict[str, parameters.Value]] = {  # the parameters of the nodes without a parameters file
     DRIVER: {"speed": 0.1, "turn_rate": 0.0},
     REPORTER: {"robot_name": "nobody", "report_period": 1.0},
 }

@@ -8,8 +8,8 @@ from autograder.checking import LaunchHarness, RunningProgram, expect
 
 RESPAWN_SECONDS = 10.0  # s of real time to wait for a new reporter; the machine may be busy
 DELAY = 0.5  # s from the end of a reporter to the start of the next one
-LATE = 0.95  # s: such a delay is too long; a busy machine hardly causes it in each of three trials
-TIMES = ("once", "twice", "three times")
+LATE = 0.95  # s: a delay that is too long; a busy machine hardly ever delays all three trials this much
+COUNT_TEXTS = ("once", "twice", "three times")
 
 
 def expect_respawn(harness: LaunchHarness) -> None:
@@ -18,7 +18,7 @@ def expect_respawn(harness: LaunchHarness) -> None:
     Raises:
         CheckFailed: no new reporter starts, one starts too early, all start too late, or the launch ends.
     """
-    seconds = [_respawn(harness, times) for times in TIMES]
+    seconds = [_respawn(harness, count_text) for count_text in COUNT_TEXTS]
     template = f"The reporter was started again {{:.2f}} s after it had been killed, instead of after {DELAY:g} s."
     expect(min(seconds) >= DELAY - harness.start_resolution, template.format(min(seconds)), fraction=0.5)
     expect(min(seconds) < LATE, template.format(min(seconds)), fraction=0.5)
@@ -34,8 +34,9 @@ def _respawn(harness: LaunchHarness, count_text: str) -> float:
         start_times.extend(filter(None, (program.start_seconds for program in _reporters(harness) - before)))
         return bool(start_times)
 
-    expect(harness.wait_for(has_restarted, RESPAWN_SECONDS), f"The reporter was killed {count_text}, and stayed away.")
-    expect(harness.status is None, "The reporter was killed, and the launch ended with it.")
+    message = f"After the reporter was killed {count_text}, it was not started again."
+    expect(harness.wait_for(has_restarted, RESPAWN_SECONDS), message)
+    expect(harness.status is None, "After the reporter was killed, the launch ended.")
     return min(start_times) - kill_time
 
 

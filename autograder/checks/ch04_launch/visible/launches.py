@@ -22,18 +22,18 @@ NAMES = ("tram", "lorry")  # the names of the two robots
 
 @dataclass(frozen=True)
 class Launches:
-    """The launches that the checks share."""
+    """The launches that the checks share: two of one robot, one of two robots, and two with a self-test."""
 
     robot: LaunchHarness
-    quiet: LaunchHarness
+    without_reporter: LaunchHarness
     fleet: LaunchHarness
-    full: LaunchHarness
-    empty: LaunchHarness
+    full_battery: LaunchHarness
+    empty_battery: LaunchHarness
 
 
 @pytest.fixture(scope="module")
 def launches(workspace: Workspace) -> Iterator[Launches]:
-    """Start all launches with the first check: together, they need half the time, and the student is waiting."""
+    """Start all launches at the first check. Together they need half the time, and the student is waiting."""
     with ExitStack() as stack:
 
         def start(file: str, arguments: dict[str, str], subscribes: dict[str, type] | None = None) -> LaunchHarness:
@@ -41,15 +41,15 @@ def launches(workspace: Workspace) -> Iterator[Launches]:
 
         yield Launches(
             robot=start(ROBOT, {"speed": "1", "robot_name": "42"}),
-            quiet=start(ROBOT, {"report": "false"}),
+            without_reporter=start(ROBOT, {"report": "false"}),
             fleet=start(FLEET, {"speed": "0.31", "first": NAMES[0], "second": NAMES[1]}, {SHARED: String}),
-            full=start(SAFE, {"battery": "90"}),
-            empty=start(SAFE, {"battery": "5"}),
+            full_battery=start(SAFE, {"battery": "90"}),
+            empty_battery=start(SAFE, {"battery": "5"}),
         )
 
 
 @check(points=1, covers=("robot-name", "speed", "report"), group="robot", doc=contract.SUBSTITUTIONS)
-@hint("DeclareLaunchArgument('speed', default_value='0.2', description='...') stands in the list, before the nodes.")
+@hint("DeclareLaunchArgument('speed', default_value='0.2', description='...') belongs in the list, before the nodes.")
 @hint("The names are robot_name, speed and report.")
 def test_arguments(workspace: Workspace) -> None:
     """robot.launch.py declares robot_name, speed and report."""
@@ -65,10 +65,10 @@ def test_arguments(workspace: Workspace) -> None:
     after=("arguments",),
     doc=contract.LAUNCH,
 )
-@hint("Each parameter's text needs its type: ParameterValue(LaunchConfiguration('speed'), value_type=float).")
-@hint("parameters=[config, {'speed': speed}]: what stands later wins.")
+@hint("An argument is a text; give it a type: ParameterValue(LaunchConfiguration('speed'), value_type=float).")
+@hint("In parameters=[config, {'speed': speed}], the later values win.")
 def test_robot(launches: Launches) -> None:
-    """robot.launch.py starts driver and reporter with arguments and parameters file, and Ctrl-C ends both."""
+    """robot.launch.py starts driver and reporter with the arguments and the parameters file; Ctrl-C ends both."""
     launch_probe.expect_nodes(launches.robot, [DRIVER, REPORTER])
     launch_probe.expect_parameters(launches.robot, DRIVER, {"speed": 1.0, "turn_rate": 0.4})
     launch_probe.expect_parameters(launches.robot, REPORTER, {"robot_name": "42", "report_period": 0.5})
@@ -78,51 +78,50 @@ def test_robot(launches: Launches) -> None:
 @check(points=1, covers="report", group="robot", after=("robot",), doc=contract.SUBSTITUTIONS)
 @hint("condition=IfCondition(LaunchConfiguration('report')) is an argument of the reporter's Node.")
 def test_quiet(launches: Launches) -> None:
-    """With report:=false, robot.launch.py starts the driver alone."""
-    launch_probe.expect_nodes(launches.quiet, [DRIVER])
+    """With report:=false, robot.launch.py starts only the driver."""
+    launch_probe.expect_nodes(launches.without_reporter, [DRIVER])
 
 
 @check(points=1, covers=("included", "first", "second", "fleet-status"), group="fleet", doc=contract.LARGE)
 @hint("GroupAction([PushRosNamespace(name), SetRemap('status', '/fleet/status'), IncludeLaunchDescription(...)])")
-@hint("SetRemap stands before the include; launch_arguments={'robot_name': name, 'speed': speed}.items() in it.")
+@hint("Put SetRemap before the include, with launch_arguments={'robot_name': name, 'speed': speed}.items().")
 def test_two_robots(launches: Launches) -> None:
-    """two_robots.launch.py starts two robots with given names and speed; both report on /fleet/status."""
+    """two_robots.launch.py starts two robots with the given names and speed; both report on /fleet/status."""
     harness = launches.fleet
     launch_probe.expect_nodes(harness, contract.nodes_in_namespaces(*NAMES))
     for name in NAMES:
         launch_probe.expect_parameters(harness, f"/{name}{DRIVER}", {"speed": 0.31})
         launch_probe.expect_parameters(harness, f"/{name}{REPORTER}", {"robot_name": name})
     harness.wait_for(lambda: len(reporting_robots(harness)) == 2, REPORT_SECONDS)
-    expect(
-        len(reporting_robots(harness)) == 2,
-        f"On {SHARED}, {', '.join(sorted(reporting_robots(harness))) or 'nobody'} was heard.",
-    )
+    robot_names = ", ".join(sorted(reporting_robots(harness))) or "No robot"
+    message = f"{robot_names} reported on {SHARED}; {' and '.join(NAMES)} should."
+    expect(len(reporting_robots(harness)) == 2, message)
 
 
 @check(points=1, covers=("self-test", "battery"), group="safe_start", doc=contract.EVENTS)
-@hint("The driver is in no list but the one that after_self_test returns.")
+@hint("Put the driver only into the list that after_self_test returns.")
 @hint("event.returncode is the exit status of the process that has ended; 0 is success.")
 def test_safe_start(launches: Launches) -> None:
-    """safe_start.launch.py starts the driver with a full battery, and ends without it when the battery is empty."""
-    launch_probe.expect_nodes(launches.full, [DRIVER, REPORTER])
-    harness = launches.empty
+    """safe_start.launch.py starts the driver if the battery is full, and ends without the driver if it is empty."""
+    launch_probe.expect_nodes(launches.full_battery, [DRIVER, REPORTER])
+    harness = launches.empty_battery
     has_ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
     expect("driver" not in launch_probe.started(harness.output), "With the battery at 5 %, the driver was started.")
     expect(has_ended, "With the battery at 5 %, the launch did not end by itself.")
 
 
 @check(points=1, covers="safe-reporter", group="safe_start", after=("safe_start",), doc=contract.LAUNCH)
-@hint("Node(..., respawn=True, respawn_delay=0.5)", "Nothing has to be handled: respawn is the node's own.")
+@hint("Node(..., respawn=True, respawn_delay=0.5)", "You need no event handler: respawn is an argument of Node.")
 def test_respawn(launches: Launches) -> None:
     """A reporter that dies is started again."""
-    expect_respawn(launches.full)
+    expect_respawn(launches.full_battery)
 
 
 @check(points=1, covers="safe-driver", group="safe_start", after=("respawn",), doc=contract.EVENTS)
 @hint("RegisterEventHandler(OnProcessExit(target_action=driver, on_exit=[Shutdown(reason='...')]))")
 def test_driver_stops(launches: Launches) -> None:
     """When the driver gets SIGTERM and ends, everything shuts down."""
-    harness = launches.full
-    expect(harness.kill("driver", signal.SIGTERM) == 1, "There is not one driver.")
+    harness = launches.full_battery
+    expect(harness.kill("driver", signal.SIGTERM) == 1, "There should be exactly one driver to stop.")
     has_ended = harness.wait_for(lambda: harness.status is not None, launch_probe.START_SECONDS)
-    expect(has_ended, "The driver ended, and the launch goes on without it.")
+    expect(has_ended, "The driver ended, but the launch goes on without it.")

@@ -29,11 +29,11 @@ RATE_WORDS = {"hz", "hertz", "per", "a", "each", "every"}
     doc=contract.IN_A_CLASS,
 )
 @hint("Read the sentence above, then the last lines of the traceback below it.")
-@hint("python -m my_robot_package.nodes.configured_node, run in ws/src/my_robot_package, shows the same.")
+@hint("python -m my_robot_package.nodes.configured_node, run in ws/src/my_robot_package, shows the same error.")
 def test_starts(robot: Robot) -> None:
     """The node configured_node starts and spins."""
     names = robot.nodes()
-    expect(NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {NODE}.")
+    expect(NODE in names, f"{NODE} is not in the graph, which contains {', '.join(names) or 'no node'}.")
 
 
 @check(
@@ -42,10 +42,10 @@ def test_starts(robot: Robot) -> None:
     needs=("starts",),
     doc=contract.PARAMETERS,
 )
-@hint("One node.declare_parameter(name, default, descriptor) for each line of the table.")
+@hint("Call node.declare_parameter(name, default, descriptor) once for each row of the table.")
 @hint("Compare the names letter by letter with ros2 param list /configured_node.")
 def test_names(robot: Robot) -> None:
-    """It declares the six parameters of the table."""
+    """The node declares the six parameters of the table."""
     names = robot.parameters.names()
     missing = parameters.near_misses(SPECIFICATIONS, names)
     expect(not missing, parameters.missing_sentence(SPECIFICATIONS, names), fraction=_fraction(len(missing)))
@@ -59,15 +59,15 @@ def test_names(robot: Robot) -> None:
     doc=contract.PARAMETERS,
 )
 @hint("The type of a parameter is the type of its default: 20 is an integer, 20.0 is a double.")
-@hint("A default of None leaves the type open.")
+@hint("With a default of None, a parameter has no type.")
 def test_types(robot: Robot) -> None:
-    """Each has the type of the table."""
-    wrong = [
+    """Each parameter has the type in the table."""
+    differences = [
         f"{name} is {_type_text(robot.descriptors.get(name))} instead of {parameters.TYPE_NAMES[spec.type]}"
         for name, spec in SPECIFICATIONS.items()
         if name not in robot.descriptors or robot.descriptors[name].type != spec.type
     ]
-    expect(not wrong, f"{'; '.join(wrong)}.", fraction=_fraction(len(wrong)))
+    expect(not differences, f"{'; '.join(differences)}.", fraction=_fraction(len(differences)))
 
 
 @check(
@@ -78,25 +78,25 @@ def test_types(robot: Robot) -> None:
 )
 @hint("The default is declare_parameter's second argument.")
 def test_defaults(robot: Robot) -> None:
-    """Started without any values, it has the defaults of the table."""
+    """Started without values, the node has the defaults in the table."""
     # Another check tests the types.
-    wrong = parameters.differences(parameters.as_declared(robot.initial, DEFAULTS), DEFAULTS)
-    expect(not wrong, f"{'; '.join(wrong)}.", fraction=_fraction(len(wrong)))
+    differences = parameters.differences(parameters.as_declared(robot.initial, DEFAULTS), DEFAULTS)
+    expect(not differences, f"{'; '.join(differences)}.", fraction=_fraction(len(differences)))
 
 
 @check(points=1, covers="described", needs=("starts",), after=("names",))
 @hint("ParameterDescriptor(description='...') is declare_parameter's third argument.")
 def test_descriptions(robot: Robot) -> None:
-    """Each has a description, which names the unit where there is one."""
+    """Each parameter has a description, which names the unit if there is one."""
     descriptions = {name: descriptor.description for name, descriptor in robot.descriptors.items()}
-    poor_names = [
+    unclear_names = [
         name for name, spec in SPECIFICATIONS.items() if not _is_description(descriptions.get(name, ""), spec.unit)
     ]
-    poor_texts = [f"{name} ({parameters.value_text(descriptions.get(name))})" for name in poor_names]
+    unclear_texts = [f"{name} ({parameters.value_text(descriptions.get(name))})" for name in unclear_names]
     expect(
-        not poor_names,
-        f"The description is missing, or names no unit: {', '.join(poor_texts)}.",
-        fraction=_fraction(len(poor_names)),
+        not unclear_names,
+        f"The description is missing, or does not name the unit: {', '.join(unclear_texts)}.",
+        fraction=_fraction(len(unclear_names)),
     )
 
 
@@ -115,11 +115,11 @@ def test_descriptions(robot: Robot) -> None:
     doc=contract.PARAMETERS,
 )
 @hint("floating_point_range=[FloatingPointRange(from_value=..., to_value=...)]: a list with one range in it.")
-@hint("An integer has integer_range=[IntegerRange(...)]; a floating_point_range does not guard it.")
+@hint("An integer has integer_range=[IntegerRange(...)]; a floating_point_range does not limit it.")
 def test_ranges(robot: Robot, draw: random.Random) -> None:
-    """Values outside the limits of the table are refused, and the descriptors say the limits."""
+    """Values outside the limits in the table are refused, and the descriptors contain these limits."""
     limited_specs = {name: spec for name, spec in SPECIFICATIONS.items() if spec.low is not None}
-    wrong = {
+    faults = {
         name: fault
         for name, spec in limited_specs.items()
         if (fault := _range_fault(spec, robot.descriptors.get(name)))
@@ -127,23 +127,26 @@ def test_ranges(robot: Robot, draw: random.Random) -> None:
     for name, spec in limited_specs.items():
         for value in _values_outside(spec, draw):
             answer = robot.change({name: value})
-            if answer.accepted or (not answer.reason and name not in wrong):
+            if answer.accepted or (not answer.reason and name not in faults):
                 text = parameters.value_text(value)
-                wrong[name] = f"it took {text}" if answer.accepted else f"it refused {text} without a reason"
-    faults = "; ".join(f"{name}: {fault}" for name, fault in wrong.items())
-    expect(not wrong, f"{faults}.", fraction=round(0.8 * (1 - len(wrong) / len(limited_specs)), 2))
+                faults[name] = f"it accepted {text}" if answer.accepted else f"it refused {text} without a reason"
+    message = "; ".join(f"{name}: {fault}" for name, fault in faults.items())
+    expect(not faults, f"{message}.", fraction=round(0.8 * (1 - len(faults) / len(limited_specs)), 2))
 
 
 @check(points=1, covers="robot_name", needs=("starts",), after=("names",))
 @hint("read_only=True in the descriptor of robot_name; the others can be changed.")
 def test_read_only(robot: Robot) -> None:
-    """The robot's name is fixed once it has started."""
+    """The parameter robot_name is fixed once the node has started."""
     before = robot.parameters.values("robot_name")
     answer = robot.parameters.change({"robot_name": "Somebody"})
-    expect(not answer.accepted, "Asked to call itself Somebody, the running node did.")
-    expect(robot.parameters.values("robot_name") == before, "It refused another name, and changed it all the same.")
-    read_only = [name for name, descriptor in robot.descriptors.items() if descriptor.read_only]
-    expect(read_only == ["robot_name"], f"Its descriptors say read-only of: {', '.join(read_only) or 'nothing'}.")
+    expect(not answer.accepted, "While the node was running, it accepted another robot_name.")
+    expect(robot.parameters.values("robot_name") == before, "It refused another robot_name, but changed it.")
+    read_only_names = [name for name, descriptor in robot.descriptors.items() if descriptor.read_only]
+    message = (
+        f"The read-only parameters are {', '.join(read_only_names) or 'none'}; only robot_name should be read-only."
+    )
+    expect(read_only_names == ["robot_name"], message)
 
 
 @check(
@@ -152,7 +155,7 @@ def test_read_only(robot: Robot) -> None:
     needs=("starts",),
     after=("names", "types"),
 )
-@hint("dynamic_typing in a descriptor lets a value of any type in: leave it out.")
+@hint("dynamic_typing in a descriptor allows values of any type: leave it out.")
 def test_typed(robot: Robot) -> None:
     """A value of another type is refused."""
     accepted_values = [
@@ -166,22 +169,22 @@ def test_typed(robot: Robot) -> None:
         )
         if name in robot.initial and robot.parameters.change({name: value}).accepted
     ]
-    expect(not accepted_values, f"It took {', '.join(accepted_values)}.", fraction=_fraction(len(accepted_values)))
+    expect(not accepted_values, f"It accepted {', '.join(accepted_values)}.", fraction=_fraction(len(accepted_values)))
     missing = parameters.near_misses(SPECIFICATIONS, robot.initial)
     expect(not missing, parameters.missing_sentence(SPECIFICATIONS, robot.initial), fraction=_fraction(len(missing)))
 
 
 @check(points=1, covers="no-others", needs=("starts",), after=("names",))
-@hint("Every declared name has work to do: what is not in the table is not declared.")
-@hint("allow_undeclared_parameters lets every misspelling in: leave it out.")
+@hint("The node uses every name that it declares: declare only the names in the table.")
+@hint("With allow_undeclared_parameters, every misspelt name is accepted: leave it out.")
 def test_no_others(robot: Robot, draw: random.Random) -> None:
-    """It declares nothing else, and refuses a name that was not declared."""
+    """The node declares no other names, and refuses a name that was not declared."""
     names = robot.parameters.names()
     expect(bool(names & set(SPECIFICATIONS)), "It declares none of the parameters of the table.")
-    others = sorted(names - set(SPECIFICATIONS))
-    expect(not others, f"It also declares {parameters.shortened(', '.join(others))}.")
+    other_names = sorted(names - set(SPECIFICATIONS))
+    expect(not other_names, f"It also declares {parameters.shortened(', '.join(other_names))}.")
     name = draw.choice(("safty_distance", "max_linear_velocty", "control_freqency"))
-    expect(not robot.parameters.change({name: 1.0}).accepted, f"It took 1.0 for {name}, a name that nobody declared.")
+    expect(not robot.parameters.change({name: 1.0}).accepted, f"It accepted 1.0 for {name}, which it does not declare.")
 
 
 def _fraction(wrong_count: int) -> float:
@@ -208,7 +211,7 @@ def _range_fault(spec: Specification, descriptor: ParameterDescriptor | None) ->
         return "it is not declared"
     ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
     if not ranges:
-        return "no range"
+        return "it has no range"
     low, high = float(ranges[0].from_value), float(ranges[0].to_value)
     if abs(low - float(spec.low or 0)) > 1e-9 or abs(high - float(spec.high or 0)) > 1e-9:
         return f"its range is {low:g} to {high:g} instead of {spec.low:g} to {spec.high:g}"

@@ -15,15 +15,15 @@ MODULE = f"{PACKAGE}.nodes.{EXECUTABLE}"
 BARE_OPTIONS: dict[str, Any] = {"start_parameter_services": False, "enable_rosout": False}
 
 
-class Start(NamedTuple):
-    """What contradiction says about the distances of a start, and how declare_configuration ended."""
+class StartOutcome(NamedTuple):
+    """The results of two calls for a start: of contradiction, and of declare_configuration."""
 
-    sentence: calls.StepResult
-    declared: calls.StepResult
+    contradiction: calls.StepResult
+    declaration: calls.StepResult
 
 
-def declare(workspace: Workspace, starts: Sequence[Mapping[str, parameters.Value]]) -> list[Start]:
-    """For each of these sets of values, call declare_configuration on a new node."""
+def declare(workspace: Workspace, starts: Sequence[Mapping[str, parameters.Value]]) -> list[StartOutcome]:
+    """For each of these sets of start values, call declare_configuration on a new node."""
     plan = calls.Plan()
     add = plan.add
     add(calls.call("init", module="rclpy"))
@@ -32,10 +32,10 @@ def declare(workspace: Workspace, starts: Sequence[Mapping[str, parameters.Value
         distances = (values.get(name, DEFAULTS[name]) for name in ("safety_distance", "slow_distance"))
         arguments = ["--ros-args", *parameters.override_arguments(values)]
         node = add(calls.call("Node", "bench", module="rclpy.node", cli_args=arguments, **BARE_OPTIONS))
-        declared = add(calls.call("declare_configuration", calls.result_of(node)))
-        steps.append((add(calls.call("contradiction", *distances)), declared))
+        declaration = add(calls.call("declare_configuration", calls.result_of(node)))
+        steps.append((add(calls.call("contradiction", *distances)), declaration))
     outcomes = calls.run_steps(workspace, CONFIGURATION, *plan.steps, network=True)
-    return [Start(outcomes[sentence], outcomes[declared]) for sentence, declared in steps]
+    return [StartOutcome(outcomes[contradiction], outcomes[declaration]) for contradiction, declaration in steps]
 
 
 def call_validate(workspace: Workspace) -> tuple[parameters.Value, parameters.Value, parameters.Value]:
@@ -83,8 +83,8 @@ def set_use_sim_time(workspace: Workspace) -> parameters.Value:
     add = plan.add
     add(calls.call("init", module="rclpy"))
     node, request = add(calls.call("ConfiguredNode")), add(calls.call("list", module="builtins"))
-    for name, new in (("use_sim_time", True), ("slow_distance", 1.5)):
-        parameter = add(calls.call("Parameter", name, value=new, module="rclpy.parameter"))
+    for name, new_value in (("use_sim_time", True), ("slow_distance", 1.5)):
+        parameter = add(calls.call("Parameter", name, value=new_value, module="rclpy.parameter"))
         add(calls.call("append", calls.result_of(parameter), on=request))
     add(calls.call("set_parameters_atomically", calls.result_of(request), on=node))
     value_step = add(calls.attribute("value", on=add(calls.call("get_parameter", "use_sim_time", on=node))))

@@ -16,20 +16,20 @@ SAFETY, SLOW = DISTANCES = ("safety_distance", "slow_distance")
 FOREIGN = "use_sim_time"  # rclpy's own parameter, which a request sets to the value that it has
 LOW, HIGH = 20, 300  # cm: the limits of both distances
 LENGTH = 5  # the largest number of requests in a dialogue
-GAP, MARGIN = 30, 5  # cm: distances so far apart, and so far from their limits, fit by any reasonable rule
-# Safety and slow distances in cm which fit, or contradict, each other, the defaults and all other clear values: a rule
-# that compares the wrong ones gives the right answer.
+GAP, MARGIN = 30, 5  # cm: any reasonable rule accepts distances this far apart and this far from their limits
+# Safety and slow distances in cm that fit, or contradict, each other, the defaults and all other clear values. So even
+# a rule that compares the wrong distances gives the correct answer.
 CLEAR_SAFETY, CLEAR_SLOW = st.integers(30, 45), st.integers(105, 200)
 CLEAR_CONTRADICTION = st.tuples(st.integers(230, HIGH), st.integers(LOW, 25))
 # The contract's answer to a request, or that a request changes no distance.
 REFUSED, ACCEPTED, WITHOUT_DISTANCES = "refused", "accepted", "without distances"
-Others = Mapping[str, st.SearchStrategy[parameters.Value]]
-OTHERS: Others = {  # parameters that have nothing to do with the distances
+Strategies = Mapping[str, st.SearchStrategy[parameters.Value]]
+OTHER_PARAMETERS: Strategies = {  # parameters that have nothing to do with the distances
     "max_linear_velocity": st.sampled_from((0.4, 0.25)),
     "control_frequency": st.sampled_from((20.0, 12.5)),
     "battery_threshold": st.integers(10, 90),
 }
-ANY: Others = {  # the same parameters, with any value within the limits
+ANY_VALUES: Strategies = {  # the same parameters, with any value within the limits
     "max_linear_velocity": st.sampled_from((0.0, 1.0)) | st.integers(1, 99).map(lambda percent: percent / 100),
     "control_frequency": st.sampled_from((1.0, 50.0)) | st.integers(3, 99).map(lambda halves: halves / 2),
     "battery_threshold": st.sampled_from((0, 100)) | st.integers(1, 99),
@@ -95,12 +95,14 @@ def matches(safety: int, slow: int, gap: int, margin: int) -> st.SearchStrategy[
 
 
 @st.composite
-def requests(draw: st.DrawFn, distances: Mapping[str, int], others: Others, *, names_foreign: bool = False) -> Request:
+def requests(
+    draw: st.DrawFn, distances: Mapping[str, int], other_parameters: Strategies, *, names_foreign: bool = False
+) -> Request:
     """Draw a request for these distances in cm and other values, with the names in any order."""
     values: dict[str, parameters.Value] = {name: new / 100 for name, new in distances.items()}
-    other_names = draw(st.lists(st.sampled_from(list(others)), unique=True, min_size=not values))
+    other_names = draw(st.lists(st.sampled_from(list(other_parameters)), unique=True, min_size=not values))
     values |= {FOREIGN: None} if names_foreign else {}
-    values |= {name: draw(others[name]) for name in other_names}
+    values |= {name: draw(other_parameters[name]) for name in other_names}
     return tuple(draw(st.permutations(list(values.items()))))
 
 
@@ -109,7 +111,7 @@ def dialogues(
     draw: st.DrawFn,
     *kinds: str,
     first: str = "",
-    others: Others = OTHERS,
+    other_parameters: Strategies = OTHER_PARAMETERS,
     is_clear: bool = False,
     names_foreign: bool = False,
 ) -> Dialogue:
@@ -119,8 +121,8 @@ def dialogues(
         draw: draws from a strategy.
         kinds: the kinds of the requests: `REFUSED`, `ACCEPTED` or `WITHOUT_DISTANCES`.
         first: the kind of the first request, if it differs.
-        others: what a request may name besides the distances.
-        is_clear: whether any rule for the distances gives the contract's answers: other checks find wrong rules.
+        other_parameters: what a request may name besides the distances, each with its values.
+        is_clear: whether any rule for the distances gives the contract's answers; other checks find wrong rules.
         names_foreign: whether each request names `FOREIGN`.
     """
     clear_pairs = st.tuples(CLEAR_SAFETY, CLEAR_SLOW).map(_named_distances)
@@ -136,14 +138,14 @@ def dialogues(
             clear = clear_pairs | CLEAR_SAFETY.map(lambda new: {SAFETY: new}) | CLEAR_SLOW.map(lambda new: {SLOW: new})
             distances = draw(clear if is_clear else matches(now[SAFETY], now[SLOW], gap=1, margin=0))
             now = {**now, **distances}
-        drawn_requests.append(draw(requests(distances, others, names_foreign=names_foreign)))
+        drawn_requests.append(draw(requests(distances, other_parameters, names_foreign=names_foreign)))
     return Dialogue((before[SAFETY] / 100, before[SLOW] / 100), tuple(drawn_requests))
 
 
 def starts(kind: str) -> st.SearchStrategy[Request]:
     """Draw start values, whose distances fit or contradict each other, or the default of the one that is missing."""
     distances = contradictions(50, 100) if kind == REFUSED else matches(50, 100, GAP, MARGIN)
-    return distances.flatmap(lambda drawn: requests(drawn, OTHERS))
+    return distances.flatmap(lambda drawn: requests(drawn, OTHER_PARAMETERS))
 
 
 def _named_distances(distances: tuple[int, int]) -> dict[str, int]:

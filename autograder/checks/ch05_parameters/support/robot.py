@@ -129,7 +129,7 @@ class Robot(AutoHarness):
             self.step(self.finest_tick_ns)
 
     def speed_at(self, distance: float) -> float:
-        """Return the speed in m/s on which the node settles; nan if no command comes."""
+        """Return the speed in m/s on which the node settles; nan if no command is published."""
         commands = self.show_wall(distance)
         return float(commands[-1].message.linear.x) if commands else math.nan
 
@@ -206,7 +206,7 @@ def missing_from(sentence: str, distances: Mapping[str, float]) -> list[str]:
 
 def expect_speed(speed: float, expected: float, situation: str) -> None:
     """Fail the check unless the speed is the expected one."""
-    expect(not math.isnan(speed), f"{situation}, no command came on /cmd_vel.")
+    expect(not math.isnan(speed), f"{situation}, no command was published on /cmd_vel.")
     expect(
         abs(speed - expected) <= TOLERANCE,
         f"{situation}, it drove at {speed:.2f} m/s; it should drive at {expected:.2f}.",
@@ -217,6 +217,6 @@ def expect_rate(rate: float, expected: float, situation: str, fraction: float = 
     """Fail the check unless the rate is the expected one. An error of 10 % fails the check."""
     expect(
         abs(rate - expected) <= RATE_TOLERANCE * expected,
-        f"{situation}, it published {rate:.1f} commands a second; it should publish {expected:.0f}.",
+        f"{situation}, it published {rate:.1f} commands per second; it should publish {expected:.0f}.",
         fraction=fraction,
     )
