@@ -1,6 +1,6 @@
 """Attacks: malicious submissions, made from the reference and attack payloads.
 
-Each attack starts from a mutant whose losses are known. An attack that gains nothing loses at least the same checks.
+An attack that starts from a mutant gains nothing if it fails at least the checks that the mutant fails.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ WRITEFILE = f"%%writefile ws/src/{PACKAGE}/{CONTROLLER}\n"
 
 PUBLISH = "        self.cmd_vel_pub.publish(command)"
 COUNT = "        self.calls = getattr(self, 'calls', 0) + 1\n"
-# Robots that ignore every scan and still touch little or nothing: name, description, and lines before the command.
+# Robots that ignore every scan and still touch little or nothing: the name, the description, and the lines that are
+# inserted before the command is published.
 BLIND_ROBOTS = (
     (
         "late driver",
@@ -43,7 +44,7 @@ BLIND_ROBOTS = (
     ),
     (
         "circling robot",
-        "drives in small circles, whatever the lidar says",
+        "drives in small circles and ignores the lidar",
         "        command = Twist()\n        command.linear.x, command.angular.z = 0.1, 0.5\n",
     ),
 )
@@ -60,7 +61,7 @@ def package_writer(
     """Return a function that writes a source tree with payloads.
 
     Args:
-        base: the mutant into which the payloads are put, or None for the reference.
+        base: the mutant to which the payloads are added, or None for the reference.
         head: text before the controller's source.
         foot: text before the controller's `if __name__`.
         replace: parts of the controller's source, each with its new text.
@@ -91,18 +92,18 @@ def notebook_writer(*cells: str, base: str | None = None) -> Callable[[Path], No
         answer = (folder / "answer" / "src" / PACKAGE / CONTROLLER).read_text()
         exercise = new_code_cell(WRITEFILE + answer)
         exercise.metadata.nbgrader = {"grade_id": "robot-controller", "grade": True, "points": 999, "locked": False}
-        fakes = [new_code_cell("print('51')") for _ in range(2)]
-        for fake in fakes:
-            fake.metadata.nbgrader = {"grade_id": "grade-timing", "grade": True, "points": 0.0, "solution": True}
-        book = new_notebook(cells=[*(new_code_cell(cell) for cell in cells), exercise, *fakes])
+        forged_cells = [new_code_cell("print('51')") for _ in range(2)]
+        for cell in forged_cells:
+            cell.metadata.nbgrader = {"grade_id": "grade-timing", "grade": True, "points": 0.0, "solution": True}
+        notebook = new_notebook(cells=[*(new_code_cell(cell) for cell in cells), exercise, *forged_cells])
         (folder / "submission").mkdir()
-        nbformat.write(book, folder / "submission" / f"{CHAPTER.assignment}.ipynb")
+        nbformat.write(notebook, folder / "submission" / f"{CHAPTER.assignment}.ipynb")
 
     return write
 
 
 def attacks() -> tuple[Attack, ...]:
-    """Return the attacks. One submission combines attacks that do not disturb each other."""
+    """Return the attacks. One submission combines attacks that do not interfere with each other."""
     slow_losses, blind_losses = CHAPTER.mutant("five_hertz").fails, CHAPTER.mutant("drives_blind").fails
     all_checks = CHAPTER.checks
     return (
@@ -128,13 +129,13 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "forged protocol",
-            "answers in the host's place with steps and counts of its own",
+            "impersonates the host and reports forged steps and counts",
             package_writer("five_hertz", head=STEAL_SECRETS, foot=FORGE_PROTOCOL),
             slow_losses,
         ),
         Attack(
             "lost messages",
-            "reports in the host's place that no message of the grader arrives",
+            "impersonates the host and reports that none of the grader's messages arrives",
             package_writer("five_hertz", head=LOSE_MESSAGES),
             slow_losses,
         ),
@@ -157,7 +158,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "constants",
-            "replays a recorded past: always forward, whatever the lidar says",
+            "always drives forward and ignores the lidar",
             package_writer(None, replace={"clearance = self.current_clearance()": "clearance = 3.0"}),
             frozenset(
                 {"turns_when_blocked", "threshold", "nan", "blind", "stops_before_first_scan", "room", "corridor"}
@@ -174,27 +175,27 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "nan commands",
-            "commands that compare equal to nothing",
+            "publishes commands of nan, which equals nothing",
             package_writer(None, replace={PUBLISH: PUBLISH_NAN}),
             frozenset({"forward_when_clear", "turns_when_blocked", "stops_before_first_scan", "room"}),
         ),
         Attack(
             "build thief",
-            "setup.py steals; plants conftest.py, pytest.ini and a start-up hook; forged install and build trees",
+            "setup.py steals and plants conftest.py, pytest.ini and a start-up hook; forges install and build trees",
             package_writer("five_hertz", files=PLANTED_FILES),
             slow_losses,
             exactly=True,
         ),
         Attack(
             "build link",
-            "setup.py leaves a link out of the install space, which a mount would follow",
+            "setup.py leaves a symlink that leads out of the install space and that a mount would follow",
             package_writer(None, files={"setup.py": LEAVE_LINK}),
             all_checks,
             frozenset({Kind.BUILD_FAILED}),
         ),
         Attack(
             "shadowed rclpy",
-            "a package called rclpy in the student's own",
+            "the student's package also installs a Python package called rclpy",
             package_writer(
                 None,
                 files={"rclpy/__init__.py": "print('51/51')\nraise SystemExit(0)", "setup.py": INSTALL_OWN_RCLPY},
@@ -218,7 +219,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "notebook link",
-            "a cell puts a link to / where the workspace was",
+            "a cell replaces the workspace with a symlink to /",
             notebook_writer("import os\nos.rename('ws', 'old')\nos.symlink('/', 'ws')"),
             all_checks,
             frozenset({Kind.NOTHING_SUBMITTED, Kind.UNSAFE_ARCHIVE}),

@@ -1,4 +1,4 @@
-"""Attacks on 03: CMake that runs code while messages are built, and code in the messages' own library."""
+"""Attacks on 03: CMake that runs code while messages are built, and code in the messages' library."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "definition thief",
-            "a text in a definition that is code to some compilers; code in the library of the messages steals",
+            "a constant in a definition that some compilers read as code; code in the messages' library steals",
             CHAPTER.write(
                 "misspelt_topic",
                 heads={f"{PACKAGE}/msg/RobotStatus.msg": TRIGRAPH},

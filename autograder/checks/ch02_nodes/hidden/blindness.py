@@ -1,4 +1,4 @@
-"""Tests from a robot's track whether it reacts to its lidar: even a robot that ignores its lidar may touch nothing."""
+"""Tests whether a robot's track shows that it reacts to its lidar. Even a robot that ignores it may touch nothing."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ HALF_SECTOR = math.radians(30.0)
 
 
 def driven_distances(recording: Recording) -> Floats:
-    """Return how many metres the robot had driven at each recorded state."""
+    """Return the distance in metres that the robot had driven at each recorded state."""
     steps = np.hypot(*np.diff(recording.poses[:, 0, :2], axis=0).T)
     return np.concatenate(([0.0], np.cumsum(steps)))
 

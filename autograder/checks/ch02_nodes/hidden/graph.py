@@ -13,8 +13,8 @@ check = group("graph")
 
 
 @check(points=1, covers="node-name", doc=contract.NODES)
-@hint("Run the cell that builds the workspace and read its last lines.")
-@hint("setup.py must name robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.")
+@hint("Run the cell that builds the workspace and read the last lines of its output.")
+@hint("setup.py must list robot_controller = my_robot_package.nodes.robot_controller:main in console_scripts.")
 def test_starts(robot: Robot) -> None:
     """The executable robot_controller starts and its node spins."""
     robot.require_running()
@@ -25,7 +25,9 @@ def test_starts(robot: Robot) -> None:
 def test_node_name(robot: Robot) -> None:
     """The node is called robot_controller."""
     names = robot.nodes()
-    expect(contract.NODE in names, f"The graph holds {', '.join(names) or 'no node'}, but no {contract.NODE}.")
+    expect(
+        contract.NODE in names, f"There is no node {contract.NODE}. Nodes in the graph: {', '.join(names) or 'none'}."
+    )
 
 
 @check(points=1, covers="scan", needs=("starts",))
@@ -39,9 +41,9 @@ def test_subscribes_scan(robot: Robot) -> None:
 @hint("A lidar publishes best-effort; a reliable subscription never matches it.")
 @hint("Give create_subscription qos_profile_sensor_data instead of 10.")
 def test_scan_qos(robot: Robot) -> None:
-    """Its scan subscription matches a lidar that publishes best-effort; commands and status have plain queues."""
+    """Its scan subscription matches a best-effort lidar, and cmd_vel and status have a plain queue of 10."""
     reason = qos_mismatch(robot)
-    expect(not reason, f"The subscription would never get a scan from a best-effort lidar: {reason}.")
+    expect(not reason, f"The subscription would never receive a scan from a best-effort lidar: {reason}.")
     difference = qos.non_default_qos(robot.node, "/cmd_vel", "/status")
     expect(not difference, difference, fraction=0.5)
 
@@ -69,22 +71,22 @@ def test_subscribes_status(robot: Robot) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'scan' is relative, '/scan' is not.")
 def test_relative(workspace: Workspace, robot: Robot, request: pytest.FixtureRequest) -> None:
-    """All topic names are relative: in the namespace /a, scan is /a/scan."""
+    """All topic names are relative: in the namespace /a, scan becomes /a/scan."""
     node = robot.node
     topics = [topic for topic in ("scan", "status") if node.get_subscriptions_info_by_topic(f"/{topic}")]
     topics += ["cmd_vel"] if node.get_publishers_info_by_topic("/cmd_vel") else []
-    expect(bool(topics), "It has none of the topics scan, status and cmd_vel, in no namespace.")
+    expect(bool(topics), "It has none of the topics scan, status and cmd_vel.")
     reason = namespaces.missing_in_namespace(workspace, contract.PACKAGE, contract.EXECUTABLE, tuple(topics))
     expect(not reason, reason)
-    wrong_arguments = request.getfixturevalue("two_nodes").wrong_arguments()
-    expect(not wrong_arguments, wrong_arguments, fraction=0.5)
+    problem = request.getfixturevalue("two_nodes").argument_problem()
+    expect(not problem, problem, fraction=0.5)
 
 
 def _expect_endpoint(robot: Robot, kind: str, topic: str, type_name: str) -> None:
-    find = (
+    find_endpoints = (
         robot.node.get_publishers_info_by_topic if kind == "publisher" else robot.node.get_subscriptions_info_by_topic
     )
-    types = sorted({peer.topic_type for peer in find(topic) if peer.node_name != "grader"})
+    types = sorted({peer.topic_type for peer in find_endpoints(topic) if peer.node_name != "grader"})
     if not types:
         list_by_node = (
             robot.node.get_publisher_names_and_types_by_node
@@ -93,11 +95,11 @@ def _expect_endpoint(robot: Robot, kind: str, topic: str, type_name: str) -> Non
         )
         names = [
             name
-            for node, space in robot.node.get_node_names_and_namespaces()
+            for node, namespace in robot.node.get_node_names_and_namespaces()
             if node != "grader"
-            for name, _ in list_by_node(node, space)
+            for name, _ in list_by_node(node, namespace)
             if name not in ("/rosout", "/parameter_events", "/clock")
         ]
-        endpoints = f"its {kind}s are on {', '.join(sorted(names))}" if names else f"it has no {kind}"
+        endpoints = f"the node's {kind}s are on {', '.join(sorted(names))}" if names else f"the node has no {kind}"
         raise CheckFailed(f"There is no {kind} on {topic}: {endpoints}.")
     expect(types == [type_name], f"The {kind} on {topic} has the type {', '.join(types)} instead of {type_name}.")

@@ -10,7 +10,7 @@ from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, PACKAGE
 from autograder.checks.ch02_nodes.support.shutdown import HINTS, START_SECONDS, expect_clean_end, last_line
 
 check = group("lifecycle")
-LONG_NAME = "a" * 300  # ROS refuses names of 256 letters or more
+LONG_NAME = "a" * 300  # ROS rejects names of 256 characters or more
 
 
 @check(points=2, covers="ends", needs=("starts",))
@@ -28,17 +28,20 @@ def test_sigterm(workspace: Workspace) -> None:
 
 
 @check(points=1, covers="fails", needs=("starts",))
-@hint("In `except RuntimeError`, a bare `raise` hands the error on. Where rclpy.ok() is false, a signal was its cause.")
-@hint("`finally` runs also where the node was never made: node = None before `try` says so.")
+@hint("In `except RuntimeError`, a bare `raise` raises the error again. If rclpy.ok() is false, a signal caused it.")
+@hint("`finally` also runs if the node was never created. Set node = None before `try`, and test it in `finally`.")
 def test_fails(workspace: Workspace) -> None:
-    """Where its node cannot be made, it ends with that error and another exit status than 0."""
+    """If its node cannot be created, it ends with that error and an exit status other than 0."""
     arguments = ("--ros-args", "-r", f"__node:={LONG_NAME}")
     result = programs.run_program(workspace, PACKAGE, EXECUTABLE, arguments, START_SECONDS)
     status, output = result.status, result.output
-    case = f"Started with a node name of {len(LONG_NAME)} letters, which ROS refuses,"
-    expect(status is not None, f"{case} it did not end within {START_SECONDS:.0f} s.")
-    expect(status != 0, f"{case} it ended with exit status 0, as if it had been asked to: the error was swallowed.")
+    situation = f"Started with a node name of {len(LONG_NAME)} characters, which ROS rejects,"
+    expect(status is not None, f"{situation} it did not end within {START_SECONDS:.0f} s.")
+    expect(status != 0, f"{situation} it ended with exit status 0: the error was swallowed.")
     # The class or the text of an exception contains "error"; the warnings that rclpy logs here do not.
     names_error = "error" in output.lower()
-    expect(names_error, f"{case} it ended with exit status {status}, and did not say which error it was.", fraction=0.5)
-    expect("another exception" not in output, f"{case} its clean-up failed, too: {last_line(output)}", fraction=0.5)
+    message = f"{situation} it ended with exit status {status}, but it did not print the error."
+    expect(names_error, message, fraction=0.5)
+    expect(
+        "another exception" not in output, f"{situation} its clean-up failed, too: {last_line(output)}", fraction=0.5
+    )

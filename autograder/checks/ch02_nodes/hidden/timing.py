@@ -15,14 +15,14 @@ from autograder.checks.ch02_nodes.support.robot import SETTLED, WRITTEN_SECONDS,
 from autograder.checks.ch02_nodes.support.scans import JUST_AHEAD, Part, scan
 
 check = group("timing")
-FLOOD_SECONDS = 20.0  # s in front of a wall, in which the warnings are counted
+FLOOD_SECONDS = 20.0  # s in front of a wall, during which the warnings are counted
 QUEUE_DEPTH = 10  # how many statuses the subscription's queue holds
-RATE_SECONDS = 4.0  # s in which 40 commands should come
+RATE_SECONDS = 4.0  # s in which 40 commands should be published
 MAX_RATE, MAX_REAL_RATE = 1.0, 1.1  # warnings a second; more in real time, where lines may be late
-LONG_SECONDS = 9.0  # s in front of a wall: long enough that one warning is missing if they come every 1.8 s
+LONG_SECONDS = 9.0  # s in front of a wall: long enough that one warning is missing if it warns every 1.8 s
 ALTERNATE_SECONDS, ALTERNATIONS = 0.2, 15  # s with an obstacle, and then without one; how many times
-# The obstacles, shown in turn. If a node throttles two warnings separately, whichever obstacles each is for, two come
-# within 1.2 s.
+# Obstacles that are shown in turn. If a node throttles two warnings separately, it logs two of them within 1.2 s,
+# whichever obstacles each is for.
 OBSTACLES = (Part(10.0, 20.0, 0.9), Part(-5.0, 5.0, -math.inf), Part(-20.0, -10.0, 0.3))
 _ENTRY_START = re.compile(r"^(?=\[(?:DEBUG|INFO|WARN|ERROR|FATAL)\] )", re.MULTILINE)  # where a log entry begins
 
@@ -31,29 +31,28 @@ _ENTRY_START = re.compile(r"^(?=\[(?:DEBUG|INFO|WARN|ERROR|FATAL)\] )", re.MULTI
 @hint("create_timer(0.1, self.control_loop) calls control_loop ten times a second.")
 @hint("Publish in the timer's callback and nowhere else, once each time.")
 def test_ten_hertz(robot: Robot) -> None:
-    """It publishes ten commands a second, one after the other, with scans and without."""
-    for situation, message, fraction in (
-        ("with scans", scan(), 0.0),
-        ("in front of a wall", scan(JUST_AHEAD), 0.75),
-        ("without scans", None, 0.0),
+    """It publishes ten commands a second at a steady pace, with and without scans."""
+    for situation, scan_message, fraction in (
+        ("With scans", scan(), 0.0),
+        ("In front of a wall", scan(JUST_AHEAD), 0.75),
+        ("Without scans", None, 0.0),
     ):
         start = robot.seconds
-        if message is None:
+        if scan_message is None:
             robot.leave_alone(RATE_SECONDS)
         else:
-            robot.see(message, RATE_SECONDS)
+            robot.see(scan_message, RATE_SECONDS)
         commands = robot.messages("/cmd_vel", since=start)
-        reason = (
-            f"It published a command {message_period.describe_pace(commands)} {situation}, instead of every {PERIOD} s."
-        )
-        expect(message_period.is_paced(commands, PERIOD, robot.time), reason, fraction=fraction)
+        pace = message_period.describe_pace(commands)
+        message = f"{situation}, it published a command {pace}, instead of every {PERIOD} s."
+        expect(message_period.is_paced(commands, PERIOD, robot.time), message, fraction=fraction)
 
 
 @check(points=1, covers="warns", needs=("subscribes_scan",))
-@hint("A warning at every scan is 10 lines a second, and nobody reads them.")
+@hint("A warning for every scan adds 10 lines a second to the log. Nobody can read them.")
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)")
 def test_no_flood(robot: Robot) -> None:
-    """It warns at most once a second while it is blocked, or blocked again and again."""
+    """It warns at most once a second while it is blocked, even if the obstacle goes and comes back."""
     start, warnings_before = robot.seconds, len(_log_entries(robot, "WARN"))
     robot.see(scan(JUST_AHEAD), FLOOD_SECONDS)
     _expect_few_warnings(robot, start, warnings_before, f"Blocked for {FLOOD_SECONDS:.0f} s,")
@@ -62,19 +61,19 @@ def test_no_flood(robot: Robot) -> None:
         robot.see(scan(OBSTACLES[number % len(OBSTACLES)]), ALTERNATE_SECONDS)
         robot.see(scan(), ALTERNATE_SECONDS)
     seconds = robot.seconds - start
-    situation = f"With something in the way {ALTERNATIONS} times in {seconds:.0f} s, far, near or too near to measure,"
+    situation = f"Blocked {ALTERNATIONS} times in {seconds:.0f} s, by something far, near or too near to measure,"
     _expect_few_warnings(robot, start, warnings_before, situation, fraction=0.5)
 
 
 @check(points=1, covers="warns", needs=("subscribes_scan",), after=("turns_when_blocked", "minus_inf"))
 @hint("A warning has its own level: self.get_logger().warning(...), in the branch that turns.")
-@hint("It warns again and again while it is blocked, not once for each obstacle.")
+@hint("It must warn repeatedly while it is blocked, not once for each obstacle.")
 def test_warns(fresh_robot: Robot, reactions: Reactions) -> None:
-    """It warns once a second while something is in the way, each time, and not while the way is clear."""
+    """It warns once a second whenever something is in the way, and never while the way is clear."""
     for reading, seconds, suffix in (
         (JUST_AHEAD.value, BLOCKED_SECONDS, ""),
         (JUST_AHEAD.value, BLOCKED_SECONDS, " a second time"),
-        (-math.inf, LONG_SECONDS, ", by what is too near to be measured"),
+        (-math.inf, LONG_SECONDS, ", by something too near to measure"),
     ):
         warnings_before = len(_log_entries(fresh_robot, "WARN"))
         commands = fresh_robot.see(scan(Part(-10.0, 10.0, reading)), seconds)
@@ -82,25 +81,27 @@ def test_warns(fresh_robot: Robot, reactions: Reactions) -> None:
             return  # the robot does not react to this reading, which `minus_inf` reports
         has_enough = _wait_for_log(fresh_robot, "WARN", more_than=warnings_before + int(seconds / SILENT_SECONDS) - 1)
         warnings = len(_log_entries(fresh_robot, "WARN")) - warnings_before
-        message = f"Blocked for {seconds:.0f} s{suffix}, it logged {warnings} warnings, not one a second."
+        message = f"Blocked for {seconds:.0f} s{suffix}, it logged {warnings} warnings, instead of one a second."
         expect(has_enough, message, fraction=0.5 if warnings >= MIN_WARNINGS else 0.0)
         fresh_robot.see(scan(), SETTLED)
         warnings_before = len(_log_entries(fresh_robot, "WARN"))
         fresh_robot.see(scan(), 2.0)
-        expect(len(_log_entries(fresh_robot, "WARN")) == warnings_before, "The way was clear, and it logged a warning.")
+        expect(
+            len(_log_entries(fresh_robot, "WARN")) == warnings_before, "It logged a warning while the way was clear."
+        )
 
 
 @check(points=1, covers=("logs-status", "status"), needs=("subscribes_status",))
 @hint("self.get_logger().info(msg.data), in status_callback.")
 def test_logs_status(robot: Robot, draw: random.Random) -> None:
-    """The text of each status is in its log, at level info."""
-    words = f"battery {draw.randrange(10**6)}"
+    """It logs the text of each status at level info."""
+    status_text = f"battery {draw.randrange(10**6)}"
     for count, suffix in enumerate(("", " again")):
-        robot.publish("/status", String(data=words))
+        robot.publish("/status", String(data=status_text))
         robot.run(0.3)
-        is_logged = _wait_for_log(robot, "INFO", words, more_than=count)
-        expect(is_logged, f"The status {words!r} came{suffix}, and it logged nothing of it at level info.")
-    burst = [f"{words}, number {number}." for number in range(QUEUE_DEPTH)]
+        is_logged = _wait_for_log(robot, "INFO", status_text, more_than=count)
+        expect(is_logged, f"The status {status_text!r} was published{suffix}, but it was not logged at level info.")
+    burst = [f"{status_text}, number {number}." for number in range(QUEUE_DEPTH)]
     for text in burst:
         robot.publish("/status", String(data=text))
     robot.run(0.3)
@@ -111,14 +112,17 @@ def test_logs_status(robot: Robot, draw: random.Random) -> None:
     robot.wait_for(lambda: count_logged() == QUEUE_DEPTH, WRITTEN_SECONDS)
     count = count_logged()
     message = (
-        f"Of {QUEUE_DEPTH} statuses that came at once, it logged {count}: a queue of {QUEUE_DEPTH} holds them all."
+        f"Of {QUEUE_DEPTH} statuses that were published at once, it logged {count}. "
+        f"A queue of {QUEUE_DEPTH} holds all of them."
     )
     expect(count == QUEUE_DEPTH, message, fraction=0.5)
 
 
-def _expect_few_warnings(robot: Robot, start: float, before: int, situation: str, *, fraction: float = 0.0) -> None:
-    """Fail the check if the node logged more than a warning a second since `start`, after `before` earlier ones."""
-    seconds, warnings = robot.seconds - start, len(_log_entries(robot, "WARN")) - before
+def _expect_few_warnings(
+    robot: Robot, start: float, warnings_before: int, situation: str, *, fraction: float = 0.0
+) -> None:
+    """Fail the check if the node has logged more than one warning a second since `start`, not counting earlier ones."""
+    seconds, warnings = robot.seconds - start, len(_log_entries(robot, "WARN")) - warnings_before
     limit, real_limit = (round(rate * seconds) + 1 for rate in (MAX_RATE, MAX_REAL_RATE))
     expect(
         warnings <= (limit if robot.time == LOCKSTEP else real_limit),
@@ -127,12 +131,12 @@ def _expect_few_warnings(robot: Robot, start: float, before: int, situation: str
     )
 
 
-def _wait_for_log(robot: Robot, level: str, words: str = "", *, more_than: int = 0) -> bool:
-    """Wait for more than `more_than` entries with these words at this level; return whether they were logged."""
-    return robot.wait_for(lambda: len(_log_entries(robot, level, words)) > more_than, WRITTEN_SECONDS)
+def _wait_for_log(robot: Robot, level: str, text: str = "", *, more_than: int = 0) -> bool:
+    """Wait for more than `more_than` log entries with a text at this level; return whether they were logged."""
+    return robot.wait_for(lambda: len(_log_entries(robot, level, text)) > more_than, WRITTEN_SECONDS)
 
 
-def _log_entries(robot: Robot, level: str, words: str = "") -> list[str]:
-    """Return the log entries with these words at this level; an entry may have several lines."""
+def _log_entries(robot: Robot, level: str, text: str = "") -> list[str]:
+    """Return the log entries with a text at this level; an entry may have several lines."""
     entries = _ENTRY_START.split(robot.output)
-    return [entry for entry in entries if entry.startswith(f"[{level}]") and words in entry]
+    return [entry for entry in entries if entry.startswith(f"[{level}]") and text in entry]

@@ -1,4 +1,4 @@
-"""Checks that apply temporal logic to the robot's track in a minute's drive through each of three hidden worlds."""
+"""Checks that apply temporal logic to the robot's track on a drive of one minute in each of three hidden worlds."""
 
 from __future__ import annotations
 
@@ -29,15 +29,16 @@ DRIVE_SECONDS = 60.0  # s: the length of each drive
 RADIUS = 0.18  # m: the robot's radius
 MIN_PATH = 3.0  # m in a minute: at 0.3 m/s that is ten seconds of driving
 LONG_PATH = 9.0  # m: half the distance that a robot at 0.3 m/s drives in a minute
-STRETCH, MIN_STRETCH = 20.0, 0.5  # s; m that it must drive in each stretch, which takes less than 2 s at 0.3 m/s
+# The length of a stretch in s, and the distance in m that the robot must drive in each: less than 2 s at 0.3 m/s.
+STRETCH, MIN_STRETCH = 20.0, 0.5
 REACH = 2.0  # m from the start that a robot must reach: correct robots get 3 m away in every world
 AHEAD = 1.25  # m: a robot turns for obstacles within 1 m, and needs some time to stop and to turn
 SAFE = "gap > 0.01"  # gap: m between the robot's footprint and the nearest thing
 TOPIC_CHECKS = ("subscribes_scan", "publishes_cmd_vel")
 REACTION_CHECKS = ("forward_when_clear", "turns_when_blocked")
 HINTS = (
-    "Look at the picture: what did the lidar see at the marked instant, and at which bearing?",
-    "Drive the same kind of world in the notebook, with drive(...), and print what control_loop decides.",
+    "Look at the picture: what did the lidar see at the marked point, and at which bearing?",
+    "Drive in a similar world with drive(...) in the notebook, and print what control_loop decides.",
 )
 
 
@@ -78,7 +79,8 @@ def _expect_safe_drive(workspace: Workspace, world: World, draw: random.Random, 
         share = min(seconds / DRIVE_SECONDS, float(distances[row_at(recording, seconds)]) / LONG_PATH)
         reacts = blindness.turns_at_obstacles(recording, AHEAD, until=seconds)
         raise CheckFailed(sentence, fraction=round(share, 2) if reacts else 0.0)
-    caption = f"The robot's track in {world.name}: {distances[-1]:.1f} m in {DRIVE_SECONDS:.0f} s, nothing touched."
+    sentence = f"It drove {distances[-1]:.1f} m in {DRIVE_SECONDS:.0f} s and touched nothing."
+    caption = f"The robot's track in {world.name}. {sentence}"
     artifacts.track("track", recording, caption, rules=rules)
     _expect_drive(recording, distances)
 
@@ -88,14 +90,16 @@ def _expect_drive(recording: Recording, distances: blindness.Floats) -> None:
     prefix = "It touched nothing, but"
     expect(distances[-1] >= MIN_PATH, f"{prefix} drove only {distances[-1]:.1f} m in a minute: it hardly moved.")
     for start in np.arange(0.0, DRIVE_SECONDS, STRETCH):
-        metres = float(np.diff(np.interp((start, start + STRETCH), recording.times, distances))[0])
-        message = f"{prefix} drove only {metres:.1f} m from t = {start:.0f} s to t = {start + STRETCH:.0f} s."
-        expect(metres >= MIN_STRETCH, message)
-    farthest = float(np.hypot(*(recording.poses[:, 0, :2] - recording.poses[0, 0, :2]).T).max())
-    expect(farthest >= REACH, f"{prefix} came no further than {farthest:.1f} m from its start: it drove in circles.")
+        driven_distance = float(np.diff(np.interp((start, start + STRETCH), recording.times, distances))[0])
+        message = f"{prefix} drove only {driven_distance:.1f} m from t = {start:.0f} s to t = {start + STRETCH:.0f} s."
+        expect(driven_distance >= MIN_STRETCH, message)
+    farthest_distance = float(np.hypot(*(recording.poses[:, 0, :2] - recording.poses[0, 0, :2]).T).max())
+    message = f"{prefix} went no further than {farthest_distance:.1f} m from its start: it drove in circles."
+    expect(farthest_distance >= REACH, message)
     reacts = blindness.turns_at_obstacles(recording, AHEAD)
     expect(
-        reacts, f"{prefix} hardly turned where something was within {AHEAD} m ahead: it did not turn for what it saw."
+        reacts,
+        f"{prefix} it did not turn mainly where something was within {AHEAD} m ahead: it did not react to its lidar.",
     )
 
 

@@ -13,8 +13,8 @@ from sensor_msgs.msg import LaserScan
 from autograder.checks.ch02_nodes.support.contract import HALF_SECTOR, SAFETY_DISTANCE
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 
-# Degrees around the sector's edge, where a beam may count or not: one check tests the width of the sector, with scans
-# that are not drawn.
+# Degrees around the sector's edge, where a beam may count or not. Another check tests the width of the sector, with
+# scans that are not drawn.
 EDGE = 3.5
 MIN_WIDTH = 3  # beams of an arc, for a robot that ignores a single beam
 # Lidars that see some directions more than once: their numbers of beams, bearings of beam 0, and steps in degrees.
@@ -72,8 +72,8 @@ class DrawnScan:
     def __repr__(self) -> str:
         last = self.first + self.step * (self.beams - 1)
         lidar = f"a lidar of {self.beams} beam{'s' * (self.beams > 1)} from {self.first:.1f}° to {last:.1f}°"
-        lidar += ", whose angle_max is a step beyond the last beam" * self.overshoot
-        limits = "" if self.limits == (RANGE_MIN, RANGE_MAX) else f", which measures {_span(*self.limits)} m"
+        lidar += ", whose angle_max is one step beyond the last beam" * self.overshoot
+        limits = "" if self.limits == (RANGE_MIN, RANGE_MAX) else f", whose range is {_span(*self.limits)} m"
         arcs = [
             f"{arc.reading:.3g} m at {_span(self.first + arc.first * self.step, self._last_bearing(arc))}°"
             for arc in self.arcs
@@ -88,18 +88,18 @@ class DrawnScan:
 def nearest_ahead(message: LaserScan) -> set[float | None]:
     """Return the smallest forward reading that counts, for each choice of beams on the sector's edges.
 
-    The requirements: bearings wrap around, the forward sector extends 30 degrees to each side, and REP 117 says which
-    readings count. None means that no reading counts, and minus infinity that something is too near to be measured.
+    By the contract, bearings wrap around, the forward sector extends 30 degrees to each side, and REP 117 says which
+    readings count. None means that no reading counts. Minus infinity means that something is too near to measure.
     """
     ranges = np.asarray(message.ranges)
     unwrapped_bearings = message.angle_min + np.arange(len(ranges)) * message.angle_increment
     degrees = np.degrees(np.remainder(unwrapped_bearings + math.pi, math.tau) - math.pi)
-    counts = np.isinf(ranges) | ((ranges >= message.range_min) & (ranges <= message.range_max))
-    inside = counts & (np.abs(degrees) < HALF_SECTOR - EDGE)
-    on_edge = counts & ~inside & (np.abs(degrees) <= HALF_SECTOR + EDGE)
-    nearest = _smallest(ranges[inside])
-    on_edges = map(float, ranges[on_edge])
-    return {nearest, *(reading for reading in on_edges if nearest is None or reading < nearest)}
+    is_valid = np.isinf(ranges) | ((ranges >= message.range_min) & (ranges <= message.range_max))
+    is_inside = is_valid & (np.abs(degrees) < HALF_SECTOR - EDGE)
+    is_on_edge = is_valid & ~is_inside & (np.abs(degrees) <= HALF_SECTOR + EDGE)
+    nearest = _smallest(ranges[is_inside])
+    edge_readings = map(float, ranges[is_on_edge])
+    return {nearest, *(reading for reading in edge_readings if nearest is None or reading < nearest)}
 
 
 def is_near(distance: float) -> bool:
@@ -150,7 +150,7 @@ def scans_ahead(
 ) -> DrawnScan:
     """Draw a scan with these readings straight ahead, for checks of readings.
 
-    A robot that errs about bearings, or about the sector's width, reacts to it as one that does not.
+    A robot that computes bearings or the sector's width incorrectly still reacts to it as a correct robot does.
     """
     arcs = [Arc(0, draw(st.integers(8, 12)), draw(readings))]
     if draw(st.booleans()):

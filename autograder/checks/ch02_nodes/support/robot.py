@@ -32,7 +32,7 @@ class Robot(AutoHarness):
         )
 
     def see(self, scan: LaserScan, seconds: float = 1.0, *, age: float = 0.0) -> list[ReceivedMessage]:
-        """Publish a scan ten times a second; return the commands that come after the controller's reaction time."""
+        """Publish a scan ten times a second; return the commands published after the controller's reaction time."""
         start = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
             self.show(scan, age=age)
@@ -45,7 +45,7 @@ class Robot(AutoHarness):
         self.run(seconds)
 
     def leave_alone(self, seconds: float) -> list[ReceivedMessage]:
-        """Publish no scan for a while; return the commands that come meanwhile."""
+        """Publish no scan for a while; return the commands published meanwhile."""
         start = self.seconds
         self.run(seconds)
         return self.messages("/cmd_vel", since=start)
@@ -63,9 +63,9 @@ def qos_mismatch(robot: Robot) -> str:
     """
     for peer in robot.node.get_subscriptions_info_by_topic("/scan"):
         if peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE:
-            return "it requests reliable delivery, a lidar offers best effort"
+            return "it requests reliable delivery, but a lidar offers best effort"
         if peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
-            return "it requests past messages (transient local), a lidar offers volatile ones"
+            return "it requests transient local durability, but a lidar offers volatile"
     return ""
 
 
@@ -116,7 +116,7 @@ class Reactions:
         distance = min(distances, key=lambda each: math.inf if each is None else each)
         situation = f"With {scan!r}"
         if distance is None:
-            expect_stop(commands, f"{situation}, none of which counts ahead", fraction=fraction)
+            expect_stop(commands, f"{situation}, so that no reading in the forward sector counts", fraction=fraction)
         elif is_near(distance):
             self.expect_turn(commands, situation, fraction=fraction)
         else:
@@ -178,12 +178,11 @@ def describe_command(command: Twist) -> str:
 def _expect(
     commands: Sequence[ReceivedMessage], expected: Velocity, situation: str, instruction: str, fraction: float
 ) -> None:
-    expect(
-        bool(commands), f"{situation}, no command came on /cmd_vel: the robot should {instruction}.", fraction=fraction
-    )
-    wrong = [received.message for received in commands if not _matches(_velocity(received), expected)]
-    behaviour = describe_command(wrong[0]) if wrong else ""
-    expect(not wrong, f"{situation}, the robot {behaviour}: it should {instruction}.", fraction=fraction)
+    message = f"{situation}, no command was published on cmd_vel: the robot should {instruction}."
+    expect(bool(commands), message, fraction=fraction)
+    wrong_commands = [received.message for received in commands if not _matches(_velocity(received), expected)]
+    behaviour = describe_command(wrong_commands[0]) if wrong_commands else ""
+    expect(not wrong_commands, f"{situation}, the robot {behaviour}: it should {instruction}.", fraction=fraction)
 
 
 def _velocity(received: ReceivedMessage) -> Velocity:

@@ -13,7 +13,7 @@ from autograder.checking import RealTimeHarness, Workspace, expect
 from autograder.checking.probes import rclpy_races
 from autograder.checks.ch02_nodes.support.contract import EXECUTABLE, NODE, PACKAGE
 
-START_SECONDS = 30.0  # s of real time within which the program starts
+START_SECONDS = 30.0  # s of real time within which the program must start
 COMMAND_TYPE = "geometry_msgs/msg/Twist"
 ANSWER_SECONDS = 10.0  # s of real time to wait for an answer
 MAX_CPU_SECONDS = 10.0  # s of processor time until the first command; a node that works needs about 1 s
@@ -23,8 +23,8 @@ TRIALS = 3  # attempts, if rclpy itself fails
 LOG_LINE = re.compile(rf"^\[[A-Z]+\] \[(?P<seconds>\d+\.\d+)\] \[{NODE[1:]}\]: .*", re.MULTILINE)
 STOP_SECONDS = 15.0  # s of real time; a node that ends cleanly needs 0.2 s
 HINTS = (
-    "except (KeyboardInterrupt, ExternalShutdownException): pass, around rclpy.spin(node).",
-    "In finally: node.destroy_node() and rclpy.try_shutdown(); rclpy.shutdown() raises once the context is down.",
+    "Call rclpy.spin(node) in a `try` with `except (KeyboardInterrupt, ExternalShutdownException): pass`.",
+    "In `finally`, call node.destroy_node() and rclpy.try_shutdown(). rclpy.shutdown() raises an error after a signal.",
 )
 
 
@@ -38,7 +38,7 @@ def expect_clean_end(workspace: Workspace, stop_signal: signal.Signals) -> None:
         status is not None, f"{STOP_SECONDS:.0f} s after {stop_signal.name} it was still running, and had to be killed."
     )
     expect(status == 0, f"After {stop_signal.name} it ended with exit status {status}: {last_line(output)}")
-    message = f"After {stop_signal.name}, when its context was gone, it still logged: {''.join(late_lines[:1])}"
+    message = f"After {stop_signal.name}, its context was shut down, but it still logged: {''.join(late_lines[:1])}"
     expect(not late_lines, message, fraction=0.5)
 
 
@@ -73,7 +73,9 @@ def _stop_while_spinning(workspace: Workspace, stop_signal: signal.Signals) -> t
             START_SECONDS if _publishes_commands(harness) else 0.0,
         )
         is_spinning = bool(harness.messages("/cmd_vel")) or _answers_requests(harness)
-        expect(is_spinning, "Started as ros2 run does, it published no command, and did not answer: it does not spin.")
+        expect(
+            is_spinning, "Started as by ros2 run, it published no command and answered no request: it does not spin."
+        )
         harness.run(QUIET_SECONDS)
         signal_time = time.time()
         status = harness.stop(stop_signal, STOP_SECONDS)

@@ -14,7 +14,7 @@ CLASS = "RobotController"
 MODULE = f"{PACKAGE}.nodes.robot_controller"
 NAMESPACES = ("/first", "/second")
 CLEAR_SCAN: dict[str, Any] = {"angle_increment": math.radians(1.0), "range_max": 3.5, "ranges": [3.0] * 360}
-MISSING = "AttributeError"  # a module without the class, or a class without the method, may be right
+MISSING = "AttributeError"  # a module without the class, or a class without the method, may be correct
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class TwoNodes:
     namespace: calls.StepResult
     clearance: calls.StepResult
 
-    def wrong_arguments(self) -> str:
-        """Return what is wrong with a node that was created with a keyword argument of Node, or "" if nothing is."""
+    def argument_problem(self) -> str:
+        """Describe what is wrong with a node created with a keyword argument of Node, or return "" if nothing is."""
         call = f"{CLASS}(namespace={NAMESPACES[0]!r})"
         if self.creation.raised == MISSING:
             return ""
@@ -40,14 +40,14 @@ class TwoNodes:
             return f"{call} raised {self.creation.raised}: {self.creation.message}"
         if self.namespace.value == NAMESPACES[0]:
             return ""
-        return f"{call} is in the namespace {self.namespace.value}: hand all keyword arguments on to Node."
+        return f"{call} is in the namespace {self.namespace.value}: pass all keyword arguments on to Node."
 
-    def shared_scan(self) -> str:
-        """Return how a node that has received no scan uses the scan of another one, or "" if it does not."""
+    def sharing_problem(self) -> str:
+        """Describe how a node that has received no scan uses the scan of another node, or return "" if it does not."""
         if self.creation.raised or self.clearance.raised == MISSING or self.clearance.value is None:
             return ""
         clearance = self.clearance.value
-        return f"A {CLASS} that had received no scan used the scan of another one: its clearance was {clearance} m."
+        return f"A {CLASS} that had received no scan used the scan of another node: its clearance was {clearance} m."
 
 
 def call_two_nodes(workspace: Workspace) -> TwoNodes:

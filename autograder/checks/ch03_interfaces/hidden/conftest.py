@@ -14,7 +14,7 @@ from autograder.checks.ch03_interfaces.support.driver import Driver
 from autograder.checks.ch03_interfaces.support.reporter import Reporter
 from autograder.checks.ch03_interfaces.support.types import Types
 
-ODD_PERIOD = 0.7  # s, so that most statuses come between two whole seconds
+ODD_PERIOD = 0.7  # s, so that most statuses are published between two whole seconds
 FAST, SLOW = 4.0, 0.02  # s that the machine's clocks count in 1 s of ROS time
 
 
@@ -42,7 +42,7 @@ def tuned_reporter(shared_tuned_reporter: Shared[Reporter]) -> Reporter:
 
 
 @pytest.fixture
-def hasty_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
+def fast_clock_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
     """A status publisher with an odd period, on a machine whose clocks are faster than ROS time."""
     arguments = ("--ros-args", *parameters.override_arguments({"status_period": ODD_PERIOD}))
     with Reporter(workspace, types, arguments, clock_rate=FAST) as reporter:
@@ -50,7 +50,7 @@ def hasty_reporter(workspace: Workspace, types: Types) -> Iterator[Reporter]:
 
 
 @pytest.fixture
-def tardy_driver(workspace: Workspace, types: Types) -> Iterator[Driver]:
+def slow_clock_driver(workspace: Workspace, types: Types) -> Iterator[Driver]:
     """A distance driver that has received its pose, on a machine whose clocks are slower than ROS time."""
     with Driver(workspace, types, clock_rate=SLOW) as driver:
         driver.place(0.0, 0.0, 0.7)

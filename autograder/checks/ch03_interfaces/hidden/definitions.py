@@ -12,7 +12,7 @@ READABLE_CHECK = ("readable",)
 FIELDS = (interfaces.Aspect.FIELDS, interfaces.Aspect.TYPES)
 TABLE_HINTS = (
     "Compare your file with the exercise's table, line by line: name, type, order.",
-    "`ros2 interface show` shows what ROS has understood; show your own and read it aloud.",
+    "`ros2 interface show` shows how ROS reads a definition. Show your own, and compare it with the table.",
 )
 
 
@@ -41,7 +41,7 @@ def test_readable(workspace: Workspace) -> None:
 )
 @hint(*TABLE_HINTS)
 def test_robot_status(workspace: Workspace) -> None:
-    """msg/RobotStatus.msg has the contract's fields, with their types, in their order."""
+    """msg/RobotStatus.msg has the contract's fields, types and order."""
     expect_definition(workspace, contract.ROBOT_STATUS, *FIELDS)
 
 
@@ -61,7 +61,7 @@ def test_robot_status(workspace: Workspace) -> None:
 )
 @hint(*TABLE_HINTS)
 def test_check_trip(workspace: Workspace) -> None:
-    """srv/CheckTrip.srv has the contract's fields in request and response, with their types, in their order."""
+    """srv/CheckTrip.srv has the contract's fields, types and order in request and response."""
     expect_definition(workspace, contract.CHECK_TRIP, *FIELDS)
 
 
@@ -81,7 +81,7 @@ def test_check_trip(workspace: Workspace) -> None:
 )
 @hint(*TABLE_HINTS)
 def test_drive_distance(workspace: Workspace) -> None:
-    """action/DriveDistance.action has the contract's fields in goal, result and feedback, with types, in order."""
+    """action/DriveDistance.action has the contract's fields, types and order in goal, result and feedback."""
     expect_definition(workspace, contract.DRIVE_DISTANCE, *FIELDS)
 
 
@@ -103,7 +103,7 @@ def test_constants(workspace: Workspace) -> None:
     after=READABLE_CHECK,
     doc=contract.LANGUAGE,
 )
-@hint("A default stands behind the field's name, without an equals sign: `int32 reserve 20`.")
+@hint("A default follows the field's name, without an equals sign: `int32 reserve 20`.")
 def test_defaults(workspace: Workspace) -> None:
     """The four defaults of the definitions have the contract's values."""
     _expect_all(workspace, interfaces.Aspect.DEFAULTS, 4)
@@ -117,20 +117,21 @@ def test_defaults(workspace: Workspace) -> None:
 )
 @hint("`float64[<=8] legs` holds at most eight, `float64[8] legs` exactly eight; `string<=80` at most 80 characters.")
 def test_bounds(workspace: Workspace) -> None:
-    """The array and the strings that have a bound in the contract have that bound, and the other array has none."""
+    """The fields legs and reason have the contract's bounds, and joint_positions has no bound."""
     _expect_all(workspace, interfaces.Aspect.BOUNDS, 4)
 
 
 def _expect_all(workspace: Workspace, aspect: interfaces.Aspect, count: int) -> None:
-    """Fail the check unless every definition is right in one aspect; `count` elements of the contract have it."""
-    wrong = []
+    """Fail the check unless each definition matches the contract in one aspect, which `count` of its elements have."""
+    problems = []
     for definition in contract.DEFINITIONS:
         try:
             student_definition = read_definition(workspace, definition)
-        except CheckFailed as error:  # such a definition has no right element; the other definitions count
-            wrong += [error.message] * sum(1 for _ in interfaces.elements(definition, aspect))
+        except CheckFailed as error:  # all elements of such a definition are wrong; the other definitions count
+            problems += [error.message] * sum(1 for _ in interfaces.elements(definition, aspect))
         else:
             differences = interfaces.compare(definition, student_definition)
-            wrong += [difference.sentence for difference in differences if difference.aspect is aspect]
-    if wrong:
-        raise CheckFailed(" ".join([*dict.fromkeys(wrong)][:3]), fraction=round(max(0.0, 1.0 - len(wrong) / count), 2))
+            problems += [difference.sentence for difference in differences if difference.aspect is aspect]
+    if problems:
+        fraction = round(max(0.0, 1.0 - len(problems) / count), 2)
+        raise CheckFailed(" ".join([*dict.fromkeys(problems)][:3]), fraction=fraction)

@@ -25,7 +25,7 @@ from autograder.checks.ch03_interfaces.support.driver import COMMANDS, STEP, Dri
 
 check = group("action", doc=contract.ACTION)
 LATE = {LOCKSTEP: 0.4, REAL: 2.0}  # s beyond PATIENCE: two commands, and the harness's steps until the result
-TOLERANCE = {LOCKSTEP: 0.05, REAL: 0.25}  # s by which a command may come too early or, in lockstep, too late
+TOLERANCE = {LOCKSTEP: 0.05, REAL: 0.25}  # s by which a command may be too early or, in lockstep, too late
 PUSH_AFTER = 0.5  # s from the start of a goal to the push
 FIRST_SPEED = 0.3  # m/s of a goal during which others are sent
 HEIGHT = 1.0  # m of height, which must not count as distance
@@ -40,10 +40,10 @@ SHORT_DISTANCE, LOW_SPEED = 0.04, 0.015  # m, m/s: a little more than a centimet
 
 
 @check(points=3, covers=("cancels", "stop"), needs=SERVER_CHECK, after=MOTION_CHECK)
-@hint("Look at goal_handle.is_cancel_requested each time around the loop; stop, then goal_handle.canceled().")
-@hint("cancel_callback must return CancelResponse.ACCEPT: without one, each cancel is rejected.")
+@hint("Check goal_handle.is_cancel_requested in each pass of the loop: stop, then goal_handle.canceled().")
+@hint("cancel_callback must return CancelResponse.ACCEPT. Without a cancel_callback, every cancel is rejected.")
 def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
-    """A cancel stops the robot immediately: the goal ends CANCELED, and the result says how far it came and why."""
+    """A cancel stops the robot immediately. The goal ends CANCELED, and the result has the distance and a reason."""
     x, y = placed_driver.x, placed_driver.y
     goal = placed_driver.start(4.5, 0.5)
     placed_driver.roll(goal, LONG_SECONDS, until=lambda: math.dist((x, y), (placed_driver.x, placed_driver.y)) > 0.5)
@@ -53,17 +53,18 @@ def test_drive_cancels(placed_driver: Driver, draw: random.Random) -> None:
     expect(goal.cancelled is True, "The cancel was not accepted within 3 s.")
     expect(goal.result is not None, "The cancel was accepted, but 3 s later the goal had not ended.", fraction=0.2)
     outcome = STATUS_NAMES.get(goal.status, goal.status)
-    expect(goal.status == GoalStatus.STATUS_CANCELED, f"After a cancel the goal ended {outcome}.", fraction=0.2)
-    expect(has_stopped(commands), "After the cancel, the last command was no stop.", fraction=0.7)
-    further = math.dist(cancel_position, (placed_driver.x, placed_driver.y))
-    expect(further <= 0.3, f"After the cancel, the robot drove on for {further:.2f} m.", fraction=0.3)
+    is_cancelled = goal.status == GoalStatus.STATUS_CANCELED
+    expect(is_cancelled, f"After a cancel, the goal ended {outcome}, not CANCELED.", fraction=0.2)
+    expect(has_stopped(commands), "After the cancel, the last command was not a stop.", fraction=0.7)
+    overrun = math.dist(cancel_position, (placed_driver.x, placed_driver.y))
+    expect(overrun <= 0.3, f"After the cancel, the robot drove on for {overrun:.2f} m.", fraction=0.3)
     driven = math.dist((x, y), (placed_driver.x, placed_driver.y))
     expect(
         abs(goal.result.driven - driven) <= 0.15,
-        f"The result says {goal.result.driven:.2f} m of {driven:.2f} m.",
+        f"In the result, driven is {goal.result.driven:.2f} m, but the robot drove {driven:.2f} m.",
         fraction=0.7,
     )
-    expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.8)
+    expect(goal.result.reason.strip() != "", "The reason in the result is empty.", fraction=0.8)
     expect_each(
         CANCELS,
         lambda drawn: _expect_cancelled(placed_driver, *drawn),
@@ -76,85 +77,88 @@ def _expect_cancelled(driver: Driver, tenths: int, is_held: bool) -> None:
     """Fail the check unless a cancel, some tenths of a second after the start, ends a goal with a stop and a reason."""
     x, y = driver.x, driver.y
     goal = driver.start(4.5, 0.5)
-    driver.stuck = is_held
+    driver.is_stuck = is_held
     if tenths:
         driver.roll(goal, tenths / 10.0)
     goal.cancel()
     driver.roll(goal, 3.0)
-    driver.stuck = False
-    situation = f"Cancelled {tenths / 10.0:.1f} s after the start{', with wheels that do not turn' * is_held}"
-    outcome = STATUS_NAMES.get(goal.status, "not at all")
+    driver.is_stuck = False
+    situation = f"With a cancel {tenths / 10.0:.1f} s after the start{' and wheels that do not turn' * is_held}"
+    outcome = f"ended {STATUS_NAMES[goal.status]}" if goal.status in STATUS_NAMES else "did not end"
     is_cancelled = goal.result is not None and goal.status == GoalStatus.STATUS_CANCELED
-    expect(is_cancelled, f"{situation}, the goal ended {outcome}.", fraction=0.5)
+    expect(is_cancelled, f"{situation}, the goal {outcome}: it should end CANCELED.", fraction=0.5)
     commands = [received.message for received in driver.commands()]
-    expect(has_stopped(commands), f"{situation}, the last command was no stop.", fraction=0.7)
+    expect(has_stopped(commands), f"{situation}, the last command was not a stop.", fraction=0.7)
     driven, reported_distance = math.dist((x, y), (driver.x, driver.y)), goal.result.driven
     expect(
         abs(reported_distance - driven) <= 0.15,
-        f"{situation}, the result says {reported_distance:.2f} m of {driven:.2f} m.",
+        f"{situation}, driven is {reported_distance:.2f} m in the result, but the robot drove {driven:.2f} m.",
         fraction=0.7,
     )
-    expect(goal.result.reason.strip() != "", f"{situation}, the result gives no reason.", fraction=0.8)
+    expect(goal.result.reason.strip() != "", f"{situation}, the reason in the result is empty.", fraction=0.8)
 
 
 @check(points=2, covers=("busy", "next-goal", "drive-cmd-vel"), needs=SERVER_CHECK, after=("drive_cancels",))
-@hint("Remember that a goal is being driven when you accept it, and forget it when it has ended.")
+@hint("When you accept a goal, remember that it is being driven, until it has ended.")
 @hint("self.busy.acquire(blocking=False) in accept, self.busy.release() at the end of execute.")
 def test_drive_one_at_a_time(placed_driver: Driver, draw: random.Random) -> None:
-    """While a goal is driven another one is rejected; the first goes on, and after it there is room for the next."""
-    overlap = _send_others(placed_driver)
+    """While a goal is driven, another one is rejected and the first one continues. The next one is then accepted."""
+    overlap = _send_other_goals(placed_driver)
     expect(not overlap.accepted[0], "While a goal was driven, another one was accepted.")
     is_any_accepted = any(overlap.accepted)
     expect(
         not is_any_accepted,
-        "While a goal was driven, another one was rejected, and one after it accepted.",
+        "While a goal was driven, another one was rejected, but the one after it was accepted.",
         fraction=0.75,
     )
-    expect(overlap.is_running, "The first goal ended when another one came.", fraction=0.3)
-    is_undisturbed = bool(overlap.between) and all(
-        drives_straight(command, overlap.speed) for command in overlap.between
+    expect(overlap.is_running, "The first goal ended when another one was sent.", fraction=0.3)
+    is_undisturbed = bool(overlap.later_commands) and all(
+        drives_straight(command, overlap.speed) for command in overlap.later_commands
     )
-    expect(is_undisturbed, "The first goal was not driven on when another one came.", fraction=0.3)
-    ending = "in another way"
-    for following in draw.sample(ENDINGS, len(ENDINGS)):
-        goal = placed_driver.send(0.1 if following == REACHED else 3.0, 0.5)
+    expect(is_undisturbed, "The robot did not continue with the first goal when another one was sent.", fraction=0.3)
+    ending = f"{CANCELLED} or {STUCK}"
+    for next_ending in draw.sample(ENDINGS, len(ENDINGS)):
+        goal = placed_driver.send(0.1 if next_ending == REACHED else 3.0, 0.5)
         expect(goal.accepted is True, f"After a goal had been {ending}, the next one was rejected.", fraction=0.5)
-        ending = following
-        if not _has_ended(placed_driver, goal, following):
+        ending = next_ending
+        if not _end_goal(placed_driver, goal, next_ending):
             break  # other checks test whether a goal ends
     is_first_goal = all(drives_straight(command, overlap.speed) for command in overlap.commands)
-    expect(is_first_goal, "With a goal that was rejected came a command that was not the first goal's.", fraction=0.75)
+    expect(is_first_goal, "After a rejected goal, a command did not belong to the first goal.", fraction=0.75)
 
 
 @check(points=2, covers=("stuck", "stop-in-time", "slow-goal"), needs=SERVER_CHECK, after=MOTION_CHECK)
-@hint("Remember how far the robot had come, and when; a centimetre more sets both anew.")
-@hint("self.get_clock().now() - progress_time > PATIENCE: stop, abort, and say why.")
+@hint("Remember the distance and the time of the last progress. Each further centimetre updates both.")
+@hint("If self.get_clock().now() - progress_time > PATIENCE, stop, abort, and give a reason.")
 def test_drive_stuck(placed_driver: Driver) -> None:
-    """A robot that gets no further for a second is stopped, and the goal ends ABORTED with a reason."""
-    placed_driver.stuck, tolerance = True, TOLERANCE[placed_driver.time]
+    """A robot that makes no progress for a second is stopped, and the goal ends ABORTED with a reason."""
+    placed_driver.is_stuck, tolerance = True, TOLERANCE[placed_driver.time]
     goal, commands = _push(placed_driver, TOO_LITTLE)
     outcome = STATUS_NAMES.get(goal.status, goal.status)
-    expect(goal.status == GoalStatus.STATUS_ABORTED, f"With wheels that do not turn, the goal ended {outcome}.")
+    is_aborted = goal.status == GoalStatus.STATUS_ABORTED
+    expect(is_aborted, f"With wheels that do not turn, the goal ended {outcome}, not ABORTED.")
     seconds = _driving_seconds(commands)
     slack = tolerance if placed_driver.time == LOCKSTEP else LATE[REAL]
     expect(
         PATIENCE - contract.PERIOD - tolerance <= seconds <= PATIENCE + slack,
-        f"With wheels that do not turn, it was told to drive for {seconds:.2f} s, instead of {PATIENCE:.0f} s.",
+        f"With wheels that do not turn, the robot was told to drive for {seconds:.2f} s, not {PATIENCE:.0f} s.",
         fraction=0.5,
     )
     twists = [received.message for received in commands]
-    expect(has_stopped(twists), "After the goal had been given up, the last command was no stop.", fraction=0.7)
-    expect(goal.result.reason.strip() != "", "The result gives no reason.", fraction=0.7)
+    expect(has_stopped(twists), "When the goal was given up, the last command was not a stop.", fraction=0.7)
+    expect(goal.result.reason.strip() != "", "The reason in the result is empty.", fraction=0.7)
     _, commands = _push(placed_driver, ENOUGH)
     seconds = _driving_seconds(commands)
     expect(
         seconds >= PUSH_AFTER + PATIENCE - contract.PERIOD - tolerance,
-        f"The robot got {ENOUGH:.4f} m further after {PUSH_AFTER} s, and was given up {seconds:.2f} s after the start.",
+        f"The robot moved {ENOUGH:.4f} m after {PUSH_AFTER} s, but the goal was given up at {seconds:.2f} s.",
         fraction=0.7,
     )
-    is_aborted = _is_aborted_rolling_back(placed_driver)
-    expect(is_aborted, "The robot rolled back, which is no way further, and was not given up.", fraction=0.7)
-    placed_driver.stuck = False
+    is_rolling_aborted = _is_aborted_rolling_back(placed_driver)
+    expect(
+        is_rolling_aborted, "The robot rolled back, which is not progress, but its goal was not given up.", fraction=0.7
+    )
+    placed_driver.is_stuck = False
     goal = placed_driver.start(1.0, SLOW)
     placed_driver.finish(goal, 6.0, f"At {SLOW} m/s, which is slower than 0.01 m/s")
     outcome = STATUS_NAMES.get(goal.status, goal.status)
@@ -168,27 +172,30 @@ def test_drive_stuck(placed_driver: Driver) -> None:
 
 
 @check(points=2, covers=("stuck", "drive-time", "driven", "result-reason"), needs=SERVER_CHECK, after=("drive_stuck",))
-@hint("Without odometry the position stays as it was, and that is no progress, either.")
-@hint("time.sleep() and time.monotonic() know nothing of ROS time; self.get_clock() does.")
-def test_drive_blind(tardy_driver: Driver) -> None:
-    """When the odometry falls silent on the way, the robot is stopped after 1 s of ROS time; the goal ends ABORTED."""
-    goal = tardy_driver.start(4.5, 0.5)
-    tardy_driver.roll(goal, 0.6)
-    tardy_driver.height = HEIGHT
-    tardy_driver.place(tardy_driver.x, tardy_driver.y, tardy_driver.heading)  # so that the driver knows its exact pose
-    driven = math.hypot(tardy_driver.x, tardy_driver.y)  # the start is (0, 0)
-    tardy_driver.is_silent, silence_start = True, tardy_driver.seconds
-    commands = tardy_driver.finish(goal, LONG_SECONDS, "With odometry that fell silent")
-    seconds = tardy_driver.seconds - silence_start
+@hint("Without odometry, the position does not change, which is not progress, either.")
+@hint("time.sleep() and time.monotonic() do not use ROS time. self.get_clock() does.")
+def test_drive_blind(slow_clock_driver: Driver) -> None:
+    """If the odometry falls silent, the robot is stopped after 1 s of ROS time, and the goal ends ABORTED."""
+    goal = slow_clock_driver.start(4.5, 0.5)
+    slow_clock_driver.roll(goal, 0.6)
+    slow_clock_driver.height = HEIGHT
+    # Publish the pose, so that the driver knows it exactly.
+    slow_clock_driver.place(slow_clock_driver.x, slow_clock_driver.y, slow_clock_driver.heading)
+    driven = math.hypot(slow_clock_driver.x, slow_clock_driver.y)  # the start is (0, 0)
+    slow_clock_driver.is_silent, silence_start = True, slow_clock_driver.seconds
+    commands = slow_clock_driver.finish(goal, LONG_SECONDS, "With odometry that fell silent")
+    seconds = slow_clock_driver.seconds - silence_start
     outcome = STATUS_NAMES.get(goal.status, goal.status)
-    expect(goal.status == GoalStatus.STATUS_ABORTED, f"With odometry that fell silent, the goal ended {outcome}.")
-    expect(has_stopped(commands), "After the goal had been given up, the last command was no stop.", fraction=0.75)
-    is_late = seconds > PATIENCE + LATE[tardy_driver.time]
-    expect(not is_late, f"The goal was given up {seconds:.1f} s of ROS time after the last odometry.", fraction=0.5)
+    is_aborted = goal.status == GoalStatus.STATUS_ABORTED
+    expect(is_aborted, f"With odometry that fell silent, the goal ended {outcome}, not ABORTED.")
+    expect(has_stopped(commands), "When the goal was given up, the last command was not a stop.", fraction=0.75)
+    is_late = seconds > PATIENCE + LATE[slow_clock_driver.time]
+    message = f"The goal was given up {seconds:.1f} s of ROS time after the last odometry, instead of 1 s."
+    expect(not is_late, message, fraction=0.5)
     reported_distance = goal.result.driven
     message = (
-        f"The last odometry was {driven:.2f} m away, and {HEIGHT:g} m higher; "
-        f"the result says {reported_distance:.2f} m."
+        f"The last odometry was {driven:.2f} m away from the start and {HEIGHT:g} m higher, "
+        f"but driven is {reported_distance:.2f} m in the result."
     )
     expect(abs(reported_distance - driven) <= 0.1, message, fraction=0.75)
     length = len(goal.result.reason)
@@ -197,43 +204,47 @@ def test_drive_blind(tardy_driver: Driver) -> None:
 
 @dataclass(frozen=True)
 class _OverlappingGoals:
-    """The results of goals that were sent while a first one was driven."""
+    """The results of other goals that were sent while a first goal was driven."""
 
-    speed: float  # m/s at which the first goal was driven before the others came
+    speed: float  # m/s at which the first goal was driven before the others were sent
     accepted: list[bool]  # whether each of the others was accepted
     is_running: bool  # whether the first goal had not ended
-    between: list[Twist]  # the commands after the answers to the others
+    later_commands: list[Twist]  # the commands after each answer to one of the others
     commands: list[Twist]  # all commands since the first of the others was sent
 
 
-def _send_others(driver: Driver) -> _OverlappingGoals:
-    """Drive a goal, send others meanwhile, and abandon all of them."""
+def _send_other_goals(driver: Driver) -> _OverlappingGoals:
+    """Drive a goal, send other goals meanwhile, and abandon all of them."""
     first = driver.start(4.5, FIRST_SPEED)
     first_commands = driver.roll(first, 0.3)
-    expect(bool(first_commands), "A goal was accepted, and no command came on cmd_vel.")
-    before, others, between = len(driver.messages(COMMANDS)), list[Goal](), list[Twist]()
+    expect(bool(first_commands), "A goal was accepted, but no command was published on cmd_vel.")
+    command_count, other_goals, later_commands = len(driver.messages(COMMANDS)), list[Goal](), list[Twist]()
     for distance in (1.0, -1.0, 1.0):  # whichever is rejected, and why, the first goal keeps the robot
-        others.append(driver.send(distance, 0.5))
-        between += driver.roll(first, 0.2)
-    commands = [received.message for received in driver.messages(COMMANDS)[before:]]
+        other_goals.append(driver.send(distance, 0.5))
+        later_commands += driver.roll(first, 0.2)
+    commands = [received.message for received in driver.messages(COMMANDS)[command_count:]]
     is_running = first.result is None
-    for goal in (first, *others):
+    for goal in (first, *other_goals):
         if goal.accepted:
             driver.abandon(goal)
     return _OverlappingGoals(
-        first_commands[-1].linear.x, [bool(goal.accepted) for goal in others], is_running, between, commands
+        first_commands[-1].linear.x,
+        [bool(goal.accepted) for goal in other_goals],
+        is_running,
+        later_commands,
+        commands,
     )
 
 
-def _has_ended(driver: Driver, goal: Goal, ending: str) -> bool:
-    """Let a goal end in this way, or in another way if it does not; return whether it has ended."""
-    driver.stuck = ending == STUCK
+def _end_goal(driver: Driver, goal: Goal, ending: str) -> bool:
+    """End a goal in this way, or abandon it if that fails; return whether it has ended."""
+    driver.is_stuck = ending == STUCK
     if ending == CANCELLED:
         driver.roll(goal, 0.2)
     if ending in (CANCELLED, CANCELLED_AT_ONCE):
         goal.cancel()
     driver.roll(goal, 3.0)
-    driver.stuck = False
+    driver.is_stuck = False
     if goal.result is None:
         driver.abandon(goal)
     return goal.result is not None
@@ -250,10 +261,10 @@ def _push(driver: Driver, distance: float) -> tuple[Goal, list[ReceivedMessage]]
 
 def _is_aborted_rolling_back(driver: Driver) -> bool:
     """Hold the wheels of a driving robot and roll it back; return whether its goal is aborted in time."""
-    driver.stuck = False
+    driver.is_stuck = False
     goal = driver.start(4.5, 0.5)
     driver.roll(goal, 1.0)
-    driver.stuck, deadline = True, driver.seconds + PATIENCE + LATE[driver.time]
+    driver.is_stuck, deadline = True, driver.seconds + PATIENCE + LATE[driver.time]
     while goal.result is None and driver.seconds < deadline:
         driver.shift(-ROLL_BACK)
         driver.roll(goal, STEP)

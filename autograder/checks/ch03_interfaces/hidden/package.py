@@ -14,23 +14,24 @@ check = group("package", doc=contract.DEFINE)
 USES = {"std_msgs": "RobotStatus", "action_msgs": "DriveDistance"}
 HINTS = (
     "Compare it with the package.xml of chapter_interfaces in this chapter.",
-    "The generators build the package: buildtool_depend. Its users need the runtime: exec_depend.",
+    "The generators build the package: use buildtool_depend. Its users need the runtime: use exec_depend.",
 )
 
 
 @check(points=2, covers="interfaces-manifest")
 @hint(*HINTS)
 def test_manifest(workspace: Workspace) -> None:
-    """package.xml says that the package is built by CMake and what the generators and the users need."""
+    """package.xml declares that CMake builds the package, and what the generators and the users need."""
     packages, _ = find_packages(workspace.root / "src")
     package_manifest = manifest.read(packages.get(INTERFACES, workspace.root / "src" / INTERFACES))
-    wrong = packaging.wrong_for_interfaces(package_manifest, USES)
-    expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=round(max(0.0, 1.0 - len(wrong) / 7), 2))
+    mistakes = packaging.wrong_for_interfaces(package_manifest, USES)
+    fraction = round(max(0.0, 1.0 - len(mistakes) / 7), 2)
+    expect(not mistakes, f"In package.xml, {'; '.join(mistakes)}.", fraction=fraction)
 
 
 @check(points=2, covers="interfaces-manifest", after=("readable",))
 @hint("Run `colcon build --packages-select my_robot_interfaces` and read the first line with “error”.")
-@hint("Each package in a definition is found in CMakeLists.txt, and named after DEPENDENCIES.")
+@hint("CMakeLists.txt must find each package that a definition uses, and name it after DEPENDENCIES.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds my_robot_interfaces."""
     if builds[INTERFACES] is not OK:
@@ -38,8 +39,8 @@ def test_builds(builds: Mapping[str, Diagnosis]) -> None:
 
 
 @check(points=2, covers="names-and-order", needs=("builds",))
-@hint("Installing a .msg file generates nothing: rosidl_generate_interfaces in CMakeLists.txt does.")
-@hint("rosidl_generate_interfaces(${PROJECT_NAME} …) names every definition, with its folder.")
+@hint("Installing a .msg file generates no code. rosidl_generate_interfaces in CMakeLists.txt generates it.")
+@hint("rosidl_generate_interfaces(${PROJECT_NAME} …) must name every definition, with its folder.")
 def test_generated(workspace: Workspace) -> None:
     """The build generates Python classes from all three definitions."""
     installation = installed.inspect_package(workspace.install, INTERFACES)
@@ -51,24 +52,24 @@ def test_generated(workspace: Workspace) -> None:
     if absent:
         copied_paths = [path for path in absent if path in installation.shared]
         reason = (
-            "the text was installed, but nothing was generated from it"
+            "the definition was installed, but no code was generated from it"
             if copied_paths
-            else "CMakeLists.txt does not name it"
+            else "CMakeLists.txt does not name the definition"
         )
         fraction = round(1.0 - len(absent) / len(contract.DEFINITIONS), 2)
         raise CheckFailed(f"There is no class for {', '.join(absent)}: {reason}.", fraction=fraction)
 
 
 @check(points=1, covers="interfaces-manifest", needs=("builds",))
-@hint("ament_package() is the last line of CMakeLists.txt, after everything that it has to know.")
+@hint("Call ament_package() in the last line of CMakeLists.txt, after everything that it depends on.")
 def test_indexed(workspace: Workspace) -> None:
-    """The ament index knows the package, so that ros2 and other packages find it."""
+    """The ament index contains the package, so that ros2 and other packages find it."""
     installation = installed.inspect_package(workspace.install, INTERFACES)
     expect(
         installation.marker,
-        "share/ament_index has no my_robot_interfaces: CMakeLists.txt does not call ament_package().",
+        "share/ament_index does not contain my_robot_interfaces: CMakeLists.txt does not call ament_package().",
     )
-    expect("package.xml" in installation.shared, "package.xml was not installed, which ament_package() does.")
+    expect("package.xml" in installation.shared, "package.xml was not installed. ament_package() installs it.")
 
 
 def _module_name(name: str) -> str:

@@ -34,14 +34,14 @@ DISCOVERY_SECONDS = 5.0  # s of real time until a service is in the graph
 DELIVERY_SECONDS = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}
 WITH_ZERO = Trip(80, (12.5, 0.0, 30.0, 0.3), excess=0.4)  # a leg may be 0 m long
 PLAIN_TRIPS = Trip(50, (5.0,), RESERVE), Trip(50, (500.0,), RESERVE)  # possible, and not possible
-RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT), and possible when that is at least reserve."
+RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT). possible is True if that is at least reserve."
 
 
 @check(points=1, covers="trip-service", needs=("status_starts", "check_trip"))
 @hint("self.create_service(CheckTrip, 'check_trip', self.check_trip) in __init__.")
-@hint("check_trip(self, request, response) returns the response.")
+@hint("check_trip(self, request, response) must return the response.")
 def test_trip_answers(reporter: Reporter) -> None:
-    """It serves check_trip as my_robot_interfaces/srv/CheckTrip, and answers."""
+    """It serves check_trip with the type my_robot_interfaces/srv/CheckTrip, and answers."""
     services: dict[str, list[str]] = {}
 
     def is_served() -> bool:
@@ -52,27 +52,27 @@ def test_trip_answers(reporter: Reporter) -> None:
     names = sorted(name for name, kinds in services.items() if kinds[0].startswith(f"{contract.INTERFACES}/"))
     expect(
         SERVICE in services,
-        f"There is no service {SERVICE}; the node serves {', '.join(names) or 'nothing of its own'}.",
+        f"There is no service {SERVICE}. Services of {contract.INTERFACES}: {', '.join(names) or 'none'}.",
     )
     expected = f"{contract.INTERFACES}/srv/CheckTrip"
     expect(
         services[SERVICE] == [expected],
-        f"{SERVICE} has the type {', '.join(services[SERVICE])}, it should be {expected}.",
+        f"{SERVICE} has the type {', '.join(services[SERVICE])} instead of {expected}.",
     )
     reporter.ask([])
 
 
 @check(points=2, covers=("trip-unknown", "trip-reason", "newest"), needs=SERVICE_CHECK, after=("status_unknown",))
-@hint("An unknown battery makes no trip possible; start with possible = False.")
+@hint("If the battery's level is unknown, leave possible False, which is its default.")
 def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter, draw: random.Random) -> None:
-    """While the battery is unknown no trip is possible, and battery_at_end is -1."""
-    _expect_answer(silent_reporter, Trip(UNKNOWN, (10.0,)), "With an unknown battery")
+    """While the battery's level is unknown, no trip is possible, and battery_at_end is -1."""
+    _expect_answer(silent_reporter, Trip(UNKNOWN, (10.0,)), "While the battery's level is unknown")
     reporter.set_battery(60)
 
     def judge(percentage: float) -> None:
         reporter.publish_battery(percentage)
         reporter.run(DELIVERY_SECONDS[reporter.time])
-        situation = f"Since the percentage is {percentage:.7g}, which is not from 0 to 1"
+        situation = f"With a percentage of {percentage:.7g}, which is not between 0 and 1"
         _expect_answer(reporter, Trip(UNKNOWN, (10.0,)), situation, fraction=0.75)
 
     expect_each(INVALID_PERCENTAGES, judge, draw, count=_case_count(reporter, 4))
@@ -81,14 +81,14 @@ def test_trip_unknown_battery(silent_reporter: Reporter, reporter: Reporter, dra
 @check(points=2, covers="trip-rule", needs=SERVICE_CHECK, after=("status_battery",))
 @hint(RULE)
 def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
-    """battery_at_end is what the legs leave of the battery, rounded down."""
+    """battery_at_end is the level that the legs leave, rounded down."""
 
     def judge(trip: Trip) -> None:
         level = _charge(reporter, trip.level, trip.excess)
-        trip = replace(trip, level=level)
         actual = reporter.ask(trip.legs, 0).battery_at_end
         expected = {at_end for _, at_end in answers(level, trip.legs, 0)}
-        message = f"{_sentence(trip)}, battery_at_end is {actual}, not {' or '.join(map(str, expected))}."
+        situation = _describe_trip(replace(trip, level=level))
+        message = f"{situation}, battery_at_end is {actual}, instead of {' or '.join(map(str, expected))}."
         expect(actual in expected, message)
 
     judge(WITH_ZERO)
@@ -96,60 +96,60 @@ def test_trip_level(reporter: Reporter, draw: random.Random) -> None:
 
 
 @check(points=2, covers=("trip-rule", "trip-enough"), needs=SERVICE_CHECK, after=("trip_level",))
-@hint(RULE, "Exactly the reserve left is enough: at least means >=.")
+@hint(RULE, "If exactly the reserve is left, that is enough: at least means >=.")
 def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
-    """A trip is possible when at least the reserve is left, and not when less is."""
+    """A trip is possible if at least the reserve is left, and not if less is left."""
     level = _charge(reporter, draw.randint(60, 100))
 
     def judge(drawn: tuple[tuple[float, ...], int]) -> None:
-        legs, more = drawn
-        at_end = reporter.ask(legs, 0).battery_at_end  # `trip_level` tests whether this is right
-        reserve = at_end + more
+        legs, reserve_excess = drawn
+        at_end = reporter.ask(legs, 0).battery_at_end  # `trip_level` tests whether this is correct
+        reserve = at_end + reserve_excess
         answer = reporter.ask(legs, reserve)
-        situation = f"At {level} %, with {at_end} % left, of which {reserve} % is the reserve"
-        answer_text = "possible" if answer.possible else "not possible"
-        expect(answer.possible is (more <= 0), f"{situation}, the trip is said to be {answer_text}.")
+        situation = f"At {level} %, with {at_end} % left and a reserve of {reserve} %"
+        expected = reserve_excess <= 0
+        expect(answer.possible is expected, f"{situation}, possible is {answer.possible} instead of {expected}.")
 
     expect_each(reserves(), judge, draw, count=_case_count(reporter, 14))
     answer = reporter.ask([level * METRES_PER_PERCENT], 0)
-    message = f"With a reserve of 0, a trip that takes all {level} % is said to be not possible."
+    message = f"With a reserve of 0, possible is False for a trip that takes all {level} %."
     expect(answer.possible, message, fraction=0.75)
 
 
 @check(points=1, covers=("trip-far", "trip-reason"), needs=SERVICE_CHECK, after=("trip_level",))
-@hint("An empty battery is 0, not below: max(0, …).", "-1 says that the level is unknown, which it is not.")
+@hint("An empty battery is at 0, not below: use max(0, …).", "-1 means an unknown level, but here the level is known.")
 def test_trip_too_far(reporter: Reporter, draw: random.Random) -> None:
-    """A trip that is longer than the battery lasts leaves 0 percent, never less, and is not possible."""
+    """A trip that takes more charge than the battery has is not possible, and battery_at_end is 0."""
     level = _charge(reporter, draw.randrange(10, 40))
     trips = st.builds(Trip, st.just(level), long_legs(level), st.sampled_from((0, 5, 20, -200)))
     expect_each(
-        trips, lambda trip: _expect_answer(reporter, trip, _sentence(trip)), draw, count=_case_count(reporter, 12)
+        trips, lambda trip: _expect_answer(reporter, trip, _describe_trip(trip)), draw, count=_case_count(reporter, 12)
     )
     reporter.set_battery(0)
     at_end = reporter.ask([], 0).battery_at_end
-    expect(at_end == 0, f"At 0 %, which is known, and without legs, battery_at_end is {at_end}, not 0.", fraction=0.5)
+    expect(at_end == 0, f"At a known level of 0 %, without legs, battery_at_end is {at_end}, not 0.", fraction=0.5)
 
 
 @check(points=2, covers=("trip-unknown", "trip-reason"), needs=SERVICE_CHECK)
 @hint("A leg is a distance: at least 0, and finite. nan is not at least 0.")
-@hint("0.0 <= leg < math.inf holds for distances alone.")
+@hint("0.0 <= leg < math.inf is True only for a distance.")
 def test_trip_bad_legs(reporter: Reporter, draw: random.Random) -> None:
-    """With a leg that is negative, nan or infinite no trip is possible, and battery_at_end is -1."""
+    """With a leg that is negative, nan or infinite, no trip is possible, and battery_at_end is -1."""
     level = draw.randrange(60, 101)
     reporter.set_battery(level)
     for leg in (-0.5, math.nan, math.inf):
         trip = Trip(level, (5.0, leg))
-        _expect_answer(reporter, trip, _sentence(trip))
+        _expect_answer(reporter, trip, _describe_trip(trip))
     trips = st.builds(Trip, st.just(level), wrong_legs())
     expect_each(
-        trips, lambda trip: _expect_answer(reporter, trip, _sentence(trip)), draw, count=_case_count(reporter, 12)
+        trips, lambda trip: _expect_answer(reporter, trip, _describe_trip(trip)), draw, count=_case_count(reporter, 12)
     )
 
 
 @check(points=1, covers="trip-reason", needs=SERVICE_CHECK, after=("trip_possible",))
 @hint("Set response.reason wherever possible stays False, and nowhere else; 80 characters at most.")
 def test_trip_reason(reporter: Reporter, draw: random.Random) -> None:
-    """The reason says why a trip is not possible, and is empty when it is."""
+    """The reason says why a trip is not possible. It is empty if the trip is possible."""
     reporter.set_battery(50)
     for trip in PLAIN_TRIPS:
         _expect_reason(reporter, trip, fraction=0.0)
@@ -161,8 +161,8 @@ def _case_count(reporter: Reporter, count: int) -> int:
     return count if reporter.time == LOCKSTEP else 4
 
 
-def _sentence(trip: Trip) -> str:
-    """Return a trip in words, at the beginning of a sentence."""
+def _describe_trip(trip: Trip) -> str:
+    """Describe a trip, as the beginning of a sentence."""
     return f"A{repr(trip)[1:]}"
 
 
@@ -171,23 +171,25 @@ def _expect_reason(reporter: Reporter, trip: Trip, fraction: float) -> None:
     answer = reporter.ask(trip.legs, trip.reserve)
     length = len(answer.reason.strip())
     if answer.possible:
-        message = f"{_sentence(trip)}, the trip is possible, and yet the reason is {answer.reason!r}."
+        message = f"{_describe_trip(trip)}, possible is True, but the reason is {answer.reason!r} instead of ''."
         expect(answer.reason == "", message, fraction=fraction)
     else:
-        message = f"{_sentence(trip)}, the trip is not possible, and the reason is {answer.reason!r}."
+        message = f"{_describe_trip(trip)}, possible is False, but the reason is {answer.reason!r}."
         expect(length >= MIN_REASON, message, fraction=fraction)
-    message = f"{_sentence(trip)}, the reason has {len(answer.reason)} characters, instead of at most {MAX_REASON}."
+    message = (
+        f"{_describe_trip(trip)}, the reason has {len(answer.reason)} characters, instead of at most {MAX_REASON}."
+    )
     expect(len(answer.reason) <= MAX_REASON, message, fraction=0.5)
 
 
 def _expect_answer(reporter: Reporter, trip: Trip, situation: str, fraction: float = 0.0) -> None:
-    """Fail the check unless the answer for a trip that is not possible is right."""
+    """Fail the check unless the answer for a trip that is not possible is correct."""
     answer = reporter.ask(trip.legs, trip.reserve)
     ((_, expected),) = answers(trip.level, trip.legs, trip.reserve)
-    expect(not answer.possible, f"{situation}, the trip is said to be possible.", fraction=fraction)
-    message = f"{situation}, battery_at_end is {answer.battery_at_end}, it should be {expected}."
+    expect(not answer.possible, f"{situation}, possible is True instead of False.", fraction=fraction)
+    message = f"{situation}, battery_at_end is {answer.battery_at_end} instead of {expected}."
     expect(answer.battery_at_end == expected, message, fraction=fraction)
-    message = f"{situation}, the reason is {answer.reason!r}."
+    message = f"{situation}, the trip is not possible, but the reason is {answer.reason!r}."
     expect(len(answer.reason.strip()) >= MIN_REASON, message, fraction=max(REASON_FRACTION, fraction))
 
 

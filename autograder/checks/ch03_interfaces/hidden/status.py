@@ -21,24 +21,24 @@ check = group("status")
 START_CHECKS = ("status_starts", "robot_status")
 PUBLISH_CHECK = ("publishes_status",)
 SOME_SECONDS = 5.0  # s to wait for a status, even if its period is wrong
-SILENCE = 6.2  # s without sensor messages: a status comes more than 5 s after the last one
+SILENCE = 6.2  # s without sensor messages, so that a status is published more than 5 s after the last one
 TUNED_PERIOD = 0.25  # s: the parameter status_period of the tuned publisher
 TUNED_SECONDS = 3.0  # s in which the tuned publisher's statuses are counted
 
 
 @check(points=1, covers="status-node", needs=("builds",), after=("generated",), doc=contract.DEFINE)
-@hint("Start it with ros2 run my_robot_package status_publisher and read its last lines.")
-@hint("setup.py is given: it names my_robot_package.nodes.status_publisher:main.")
+@hint("Start it with ros2 run my_robot_package status_publisher and read the last lines of its output.")
+@hint("setup.py, which is given, names my_robot_package.nodes.status_publisher:main.")
 def test_status_starts(reporter: Reporter) -> None:
-    """The node status_publisher starts with the interfaces of my_robot_interfaces, and spins."""
-    expect(bool(reporter.nodes()), "The program runs, and the graph holds no node.")
+    """The node status_publisher starts and spins, with the interfaces of my_robot_interfaces."""
+    expect(bool(reporter.nodes()), "The program runs, but there is no node in the graph.")
 
 
 @check(points=1, covers=("status-topic", "status-node"), needs=("status_starts",), doc=contract.DEFINE)
 @hint("create_publisher(RobotStatus, 'robot_status', STATUS_QOS) in __init__.")
 @hint("The name is the argument of super().__init__.")
 def test_publishes_status(reporter: Reporter) -> None:
-    """It is called status_publisher, and publishes robot_status as my_robot_interfaces/msg/RobotStatus."""
+    """The node is called status_publisher, and publishes robot_status as my_robot_interfaces/msg/RobotStatus."""
     peers = reporter.node.get_publishers_info_by_topic(TOPIC)
     types = sorted({peer.topic_type for peer in peers})
     expected = f"{contract.INTERFACES}/msg/RobotStatus"
@@ -49,35 +49,35 @@ def test_publishes_status(reporter: Reporter) -> None:
     )
     expect(
         bool(types),
-        f"Nobody publishes on /robot_status; the node publishes on {', '.join(offered_topics) or 'no topic'}.",
+        f"There is no publisher on /robot_status; the node publishes on {', '.join(offered_topics) or 'no topic'}.",
     )
-    expect(types == [expected], f"/robot_status carries {', '.join(types)}, it should carry {expected}.")
+    expect(types == [expected], f"/robot_status has the type {', '.join(types)} instead of {expected}.")
     names = reporter.nodes()
-    message = f"The graph holds {', '.join(names) or 'no node'}, but no status_publisher."
+    message = f"There is no node /{contract.STATUS}. Nodes in the graph: {', '.join(names) or 'none'}."
     expect(f"/{contract.STATUS}" in names, message, fraction=0.5)
 
 
 @check(points=1, covers="status-topic", needs=START_CHECKS, after=PUBLISH_CHECK, doc=contract.QOS)
 @hint("STATUS_QOS is defined above the class; use it instead of a number.")
 def test_status_for_late_joiners(reporter: Reporter) -> None:
-    """Its quality of service keeps the last status for whoever joins late."""
+    """Its quality of service keeps the last status for nodes that join late."""
     peers = reporter.node.get_publishers_info_by_topic(TOPIC)
-    expect(bool(peers), "Nobody publishes on /robot_status.")
+    expect(bool(peers), "There is no publisher on /robot_status.")
     for peer in peers:
         is_durable = peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
         is_reliable = peer.qos_profile.reliability == ReliabilityPolicy.RELIABLE
-        expect(is_durable, "A watcher that joins late gets nothing: the publisher's durability is volatile.")
-        expect(is_reliable, "The publisher sends best effort; a status should arrive.")
-    if reporter.time == LOCKSTEP:  # in real time, the node publishes while the watcher joins
+        expect(is_durable, "A node that joins late gets no status: the publisher's durability is volatile.")
+        expect(is_reliable, "The publisher's reliability is best effort instead of reliable.")
+    if reporter.time == LOCKSTEP:  # in real time, the node publishes while the other node joins
         reporter.run(2.2)  # so that there are several statuses to keep
         count = late_joiner.count_kept_messages(reporter.node, TOPIC, reporter.types.robot_status)
-        expect(count == 1, f"A watcher that joins late got {count} messages, not the last one alone.", fraction=0.5)
+        expect(count == 1, f"A node that joined late got {count} messages, not only the last one.", fraction=0.5)
 
 
 @check(points=1, covers=("status-topic", "status-period", "newest"), needs=START_CHECKS, after=PUBLISH_CHECK)
 @hint("create_timer(period, self.publish_status), with the period that read_parameters() returns.")
 def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
-    """It publishes once a second, and at another rate when status_period says so."""
+    """It publishes once a second, or with the period that the parameter status_period has."""
     start = reporter.seconds
     for _ in range(10):
         reporter.publish_battery(0.5)
@@ -86,21 +86,22 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     sensor_end = reporter.seconds
     statuses = _statuses(reporter, SILENCE)
     is_paced = message_period.is_paced(statuses, PERIOD, reporter.time)
-    expect(is_paced, f"Statuses came {message_period.describe_pace(statuses)}, instead of every second.")
+    expect(is_paced, f"It published a status {message_period.describe_pace(statuses)}, instead of every second.")
     count = len(reporter.messages(TOPIC, since=start, until=sensor_end))
-    message = f"While the sensors spoke ten times a second, {count} statuses came in a second, instead of 1."
+    message = f"With ten sensor messages a second, it published {count} statuses in a second, instead of 1."
     expect(count <= 3, message, fraction=0.5)
     later_statuses = [received.message for received in reporter.messages(TOPIC, since=sensor_end)]
-    first, last = (
+    first_values, last_values = (
         (status.battery_level, list(status.joint_positions)) for status in (later_statuses[0], later_statuses[-1])
     )
-    message = f"Within {SILENCE} s after the last message of each sensor, level and joints went from {first} to {last}."
-    expect(first == last, f"{message} The newest message counts, however old it is.", fraction=0.5)
+    change = f"level and joints changed from {first_values} to {last_values}"
+    message = f"Within {SILENCE} s after the last message of each sensor, {change}."
+    expect(first_values == last_values, f"{message} The newest message counts, however old it is.", fraction=0.5)
     statuses = _statuses(tuned_reporter, TUNED_SECONDS)
     is_paced = message_period.is_paced(statuses, TUNED_PERIOD, tuned_reporter.time)
     expect(
         is_paced,
-        f"With status_period {TUNED_PERIOD} s, statuses came {message_period.describe_pace(statuses)}.",
+        f"With a status_period of {TUNED_PERIOD} s, it published a status {message_period.describe_pace(statuses)}.",
         fraction=0.5,
     )
 
@@ -113,14 +114,18 @@ def test_status_rate(reporter: Reporter, tuned_reporter: Reporter) -> None:
     doc="https://docs.ros.org/en/jazzy/p/std_msgs/msg/Header.html",
 )
 @hint("msg.header.stamp = self.get_clock().now().to_msg(), in publish_status.")
-def test_status_stamp(hasty_reporter: Reporter) -> None:
-    """Each status carries the time at which it was put together, by the node's clock."""
-    hasty_reporter.publish_battery(0.5)
-    hasty_reporter.publish_joints([0.5])
-    hasty_reporter.run(0.5)  # so that the sensor messages' time of arrival would be a wrong stamp
-    stamp = hasty_reporter.status().header.stamp
-    newest = hasty_reporter.messages(TOPIC)[-1].seconds
-    age = hasty_reporter.now_ns / 1e9 - (hasty_reporter.seconds - newest) - (stamp.sec + stamp.nanosec / 1e9)
+def test_status_stamp(fast_clock_reporter: Reporter) -> None:
+    """The stamp of each status is the time at which it was put together, by the node's clock."""
+    fast_clock_reporter.publish_battery(0.5)
+    fast_clock_reporter.publish_joints([0.5])
+    fast_clock_reporter.run(0.5)  # so that the sensor messages' time of arrival would be a wrong stamp
+    stamp = fast_clock_reporter.status().header.stamp
+    receive_time = fast_clock_reporter.messages(TOPIC)[-1].seconds
+    age = (
+        fast_clock_reporter.now_ns / 1e9
+        - (fast_clock_reporter.seconds - receive_time)
+        - (stamp.sec + stamp.nanosec / 1e9)
+    )
     expect(stamp.sec != 0, "header.stamp is 0: it was never set.")
     fraction = 0.5 if abs(age) < 1.0 else 0.0  # a stamp that lacks its nanoseconds
     difference = f"{abs(age):.1f} s {'older' if age > 0 else 'newer'} than the message"
@@ -128,24 +133,25 @@ def test_status_stamp(hasty_reporter: Reporter) -> None:
 
 
 @check(points=2, covers="unknown", needs=START_CHECKS, after=PUBLISH_CHECK, doc=contract.BATTERY)
-@hint("No message is not an empty battery: start with self.battery = None, and say BATTERY_UNKNOWN.")
+@hint("No message does not mean an empty battery: start with self.battery = None, and publish BATTERY_UNKNOWN.")
 def test_status_unknown(silent_reporter: Reporter) -> None:
-    """Before any sensor has spoken the battery is unknown, not charging, and there are no joints."""
+    """Before the first sensor message, battery_level is -1, is_charging is False, and joint_positions is empty."""
     status = silent_reporter.status()
-    expect(status.battery_level == UNKNOWN, f"battery_level is {status.battery_level}, it should be {UNKNOWN}.")
-    expect(not status.is_charging, "is_charging is true, and nothing has said so.")
-    expect(len(status.joint_positions) == 0, f"There are {len(status.joint_positions)} joints, from nowhere.")
+    expect(status.battery_level == UNKNOWN, f"battery_level is {status.battery_level} instead of {UNKNOWN}.")
+    expect(not status.is_charging, "is_charging is True before the first battery state.")
+    count = len(status.joint_positions)
+    expect(count == 0, f"joint_positions has {count} values before the first joint state.")
 
 
 @check(points=1, covers="status-name", needs=START_CHECKS, after=PUBLISH_CHECK)
 @hint("self.robot_name comes from read_parameters(); put it into each message.")
 def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
-    """The status carries the name that the parameter robot_name holds."""
+    """robot_name in the status is the value of the parameter robot_name."""
     tuned_reporter.until(lambda: bool(tuned_reporter.messages(TOPIC)), SOME_SECONDS)
     statuses = tuned_reporter.messages(TOPIC)
-    expect(bool(statuses), f"No message came on robot_status for {SOME_SECONDS:.0f} s.")
+    expect(bool(statuses), f"No message was published on robot_status for {SOME_SECONDS:.0f} s.")
     actual = statuses[-1].message.robot_name
-    expect(actual == tuned_name, f"With robot_name {tuned_name!r} the status says {actual!r}.")
+    expect(actual == tuned_name, f"robot_name in the status is {actual!r}, but the parameter is {tuned_name!r}.")
 
 
 @check(
@@ -156,9 +162,9 @@ def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
     doc=contract.BATTERY,
 )
 @hint("percentage goes from 0.0 to 1.0; 0.855 is 86 percent.")
-@hint("math.floor(percentage * 100.0 + 0.5) rounds halves up; int() would cut.")
+@hint("math.floor(percentage * 100.0 + 0.5) rounds halves up; int() would round down.")
 def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
-    """battery_level is the newest battery state in whole percent."""
+    """battery_level is the charge of the newest battery state in whole percent."""
     for percentage in (0.0, 1.0, 0.854):
         _expect_level(reporter, percentage, before=draw.random())
     expect_each(
@@ -181,14 +187,14 @@ def _expect_level(reporter: Reporter, percentage: float, before: float, fraction
     reporter.publish_battery(percentage)
     actual = reporter.status().battery_level
     expected = whole_percents(percentage)
-    message = f"At percentage {percentage:.7g} battery_level is {actual}, instead of {' or '.join(map(str, expected))}."
+    message = f"At percentage {percentage:.7g}, battery_level is {actual}, not {' or '.join(map(str, expected))}."
     expect(actual in expected, message, fraction=fraction)
 
 
 @check(points=1, covers="percent-unknown", needs=START_CHECKS, after=PUBLISH_CHECK, doc=contract.BATTERY)
-@hint("A driver says nan when it does not know; nan is not between 0.0 and 1.0.")
+@hint("A driver publishes nan if it does not know the percentage. nan is not between 0.0 and 1.0.")
 def test_status_bad_battery(reporter: Reporter, draw: random.Random) -> None:
-    """A percentage that is nan or outside 0 to 1 is unknown."""
+    """battery_level is -1 if the percentage is nan or outside 0 to 1."""
     _expect_level(reporter, math.nan, before=0.5)
     expect_each(
         INVALID_PERCENTAGES,
@@ -208,21 +214,21 @@ def test_status_charging(reporter: Reporter) -> None:
         expect(actual is (name == "CHARGING"), f"is_charging is {actual} while power_supply_status is {name}.")
     reporter.publish_battery(math.nan, status=BatteryState.POWER_SUPPLY_STATUS_CHARGING)
     actual = reporter.status().is_charging
-    expect(actual, "is_charging is False while the battery is charging, and does not say its level.", fraction=0.5)
+    expect(actual, "is_charging is False for a battery of unknown level that is charging.", fraction=0.5)
 
 
 @check(points=1, covers=("joint-topic", "newest"), needs=START_CHECKS, after=PUBLISH_CHECK)
-@hint("msg.joint_positions = list(self.joints.position), when there are joints.")
+@hint("If a joint state has arrived, msg.joint_positions = list(self.joints.position).")
 def test_status_joints(reporter: Reporter, draw: random.Random) -> None:
-    """joint_positions are the newest joint state's positions, as many as there are."""
+    """joint_positions holds all positions of the newest joint state."""
     for count in (draw.randrange(2, 6), draw.randrange(6, 12), 0):
         positions = [draw.uniform(-3.0, 3.0) for _ in range(count)]
         reporter.publish_joints(positions)
         actual = list(reporter.status().joint_positions)
-        is_right = len(actual) == count and all(map(is_same_float32, actual, positions))
+        is_correct = len(actual) == count and all(map(is_same_float32, actual, positions))
         expect(
-            is_right,
-            f"Of {count} positions, joint_positions holds {_shorten(actual)} instead of {_shorten(positions)}.",
+            is_correct,
+            f"With {count} positions, joint_positions is {_shorten(actual)} instead of {_shorten(positions)}.",
         )
     expect_volatile(reporter.node, JOINTS)
 

@@ -40,14 +40,15 @@ def answers(level: int, legs: tuple[float, ...], reserve: int) -> set[tuple[bool
     """Return whether a trip is possible, and the percent at its end: more than one pair if rounding errors decide."""
     if level == UNKNOWN or not all(0.0 <= leg < math.inf for leg in legs):
         return {(False, UNKNOWN)}
-    left = level - math.fsum(legs) / METRES_PER_PERCENT
+    charge_left = level - math.fsum(legs) / METRES_PER_PERCENT
     rounding = 0.0 if all(leg % EIGHTH == 0.0 for leg in legs) else ROUNDING
-    ends = {(left + error >= 0.0, math.floor(max(0.0, left + error))) for error in (-rounding, rounding)}
+    charges = (charge_left - rounding, charge_left + rounding)
+    ends = {(charge >= 0.0, math.floor(max(0.0, charge))) for charge in charges}
     return {(lasts and at_end >= reserve, at_end) for lasts, at_end in ends}
 
 
 def whole_percents(percentage: float) -> set[int]:
-    """Return the right levels of a battery state: halves are rounded up; two are right if rounding errors decide."""
+    """Return the correct levels of a battery state, with halves rounded up: two levels if rounding errors decide."""
     if not 0.0 <= percentage <= 1.0:
         return {UNKNOWN}
     percent = percentage * 100.0

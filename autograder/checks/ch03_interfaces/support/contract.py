@@ -54,7 +54,7 @@ DRIVE_DISTANCE = interfaces.Interface(
 )
 DEFINITIONS = (ROBOT_STATUS, CHECK_TRIP, DRIVE_DISTANCE)
 
-UNKNOWN = -1  # percent: the level of a battery that is not known
+UNKNOWN = -1  # percent: the value for a level that is not known
 RESERVE = 20  # percent, by default
 METRES_PER_PERCENT = 5.0  # m that one percent of the charge lasts
 MAX_DISTANCE = 5.0  # m, of a goal

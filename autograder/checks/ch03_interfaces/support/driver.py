@@ -24,12 +24,12 @@ class Driver(AutoHarness):
     """A harness that sends goals and simulates the robot.
 
     A program that has been sent goals and then rejects a valid one is restarted: another check tests whether it
-    is ready for the next goal.
+    accepts the next goal.
 
     Attributes:
         x, y, heading: the robot's pose, in m and rad.
         height: the robot's height in m, which must not count as distance.
-        stuck: whether the wheels are held.
+        is_stuck: whether the wheels are held.
         is_silent: whether the odometry is silent.
         has_goals: whether the program has been sent a goal.
     """
@@ -39,21 +39,21 @@ class Driver(AutoHarness):
         super().__init__(workspace, PACKAGE, DRIVER, publishes=publishes, subscribes=subscribes, clock_rate=clock_rate)
         self.types = types
         self.x, self.y, self.heading, self.height = 0.0, 0.0, 0.0, 0.0
-        self.stuck = self.is_silent = self.has_goals = False
+        self.is_stuck = self.is_silent = self.has_goals = False
         self._first_command = 0  # the number of commands before the last goal was sent
 
     def restart(self) -> None:
         """Restart the program, and publish the robot's pose."""
-        stuck, is_silent = self.stuck, self.is_silent
+        is_stuck, is_silent = self.is_stuck, self.is_silent
         self.__exit__(None, None, None)
         self.__enter__()
         self.has_goals = False
         self.place(self.x, self.y, self.heading)
-        self.stuck, self.is_silent = stuck, is_silent
+        self.is_stuck, self.is_silent = is_stuck, is_silent
 
     def place(self, x: float, y: float, heading: float) -> None:
         """Move the robot to a pose, and publish it."""
-        self.x, self.y, self.heading, self.stuck, self.is_silent = x, y, heading, False, False
+        self.x, self.y, self.heading, self.is_stuck, self.is_silent = x, y, heading, False, False
         for _ in range(3):
             self._publish_odometry()
             self.run(STEP)
@@ -82,11 +82,11 @@ class Driver(AutoHarness):
         if has_goals and not goal.accepted:
             self.restart()
             goal = self.send(distance, speed)
-        expect(goal.accepted is True, f"A goal of {distance:.2f} m was rejected, and nothing stood against it.")
+        expect(goal.accepted is True, f"A valid goal of {distance:.2f} m was rejected.")
         return goal
 
     def commands(self) -> list[ReceivedMessage]:
-        """Return the commands that have come since the last goal was sent."""
+        """Return the commands that were published since the last goal was sent."""
         return self.messages(COMMANDS)[self._first_command :]
 
     def abort_reason(self) -> str:
@@ -107,7 +107,7 @@ class Driver(AutoHarness):
             self.run(STEP)
             applied_count = self._apply_commands(applied_count)
             self._publish_odometry()
-        self.run(2 * STEP)  # the last command may come with the result
+        self.run(2 * STEP)  # the last command may arrive with the result
         self._apply_commands(applied_count)
         return [received.message for received in self.messages(COMMANDS)[first:]]
 
@@ -120,14 +120,14 @@ class Driver(AutoHarness):
     def abandon(self, goal: Goal) -> None:
         """End a goal that is no longer needed, by a cancel or, if that fails, by holding the wheels."""
         goal.cancel()
-        self.stuck = True
+        self.is_stuck = True
         self.roll(goal, 5.0)
-        self.stuck = False
+        self.is_stuck = False
 
     def _apply_commands(self, first: int) -> int:
         commands = self.messages(COMMANDS)
         for index, received in enumerate(commands[first:], first):
-            if not self.stuck:
+            if not self.is_stuck:
                 duration = min(PERIOD, received.seconds - commands[index - 1].seconds) if index else PERIOD
                 self.shift(duration * received.message.linear.x)
         return len(commands)

@@ -14,6 +14,6 @@ def expect_volatile(node: Node, topic: str) -> None:
         is_transient = peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
         expect(
             not is_transient,
-            f"{topic} is subscribed to with transient local durability: it hears no driver.",
+            f"The subscription to {topic} is transient local, so it receives nothing from a volatile publisher.",
             fraction=0.5,
         )

@@ -30,7 +30,8 @@ def read_definition(workspace: Workspace, expected: interfaces.Interface) -> int
             f"{file.parent.name}/{file.name}" for file in sorted(folder.glob("*/*")) if file.parent.name != "src"
         ]
         similar = interfaces.closest(expected.path, present_paths)
-        raise CheckFailed(f"There is no {INTERFACES}/{expected.path}" + (f", but a {similar}." if similar else "."))
+        suffix = f", but there is a {similar}" if similar else ""
+        raise CheckFailed(f"There is no {INTERFACES}/{expected.path}{suffix}.")
     try:
         text = path.read_bytes()[: interfaces.MAX_BYTES + 1].decode()
         expect(STUB not in text, f"{expected.path} is still to be written.")

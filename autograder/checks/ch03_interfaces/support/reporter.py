@@ -56,19 +56,19 @@ class Reporter(AutoHarness):
         return Header(stamp=Time(nanoseconds=self.now_ns - STAMP_AGE_NS).to_msg())
 
     def status(self) -> Any:
-        """Return the next status; fail the check if none comes."""
+        """Return the next status; fail the check if none is published."""
         start = self.seconds
         self.run(PERIOD + 0.2)
         self.until(lambda: bool(self.messages(TOPIC, since=start)), EXTRA_SECONDS)  # another check tests the period
         statuses = self.messages(TOPIC, since=start)
-        expect(bool(statuses), f"No message came on robot_status for {PERIOD + EXTRA_SECONDS:.0f} s.")
+        expect(bool(statuses), f"No message was published on robot_status for {PERIOD + EXTRA_SECONDS:.0f} s.")
         return statuses[-1].message
 
     def set_battery(self, percent: int, excess: float = 0.25) -> int:
         """Publish a charge of `percent` plus `excess` percent, and wait until the status shows the level `percent`.
 
         Returns:
-            The level that the status shows then, in percent; -1 if no status comes.
+            The level that the status shows then, in percent; -1 if no status is published.
         """
         start = self.seconds
         self.publish_battery(min(1.0, (percent + excess) / 100.0))
@@ -81,7 +81,7 @@ class Reporter(AutoHarness):
         return shown_level()
 
     def ask(self, legs: Sequence[float], reserve: int = RESERVE) -> Any:
-        """Call the service for a trip and return the response; fail the check if none comes."""
+        """Call the service for a trip and return the response; fail the check if none arrives."""
         request = self.types.check_trip.Request(legs=list(legs), reserve=reserve)
         response = self.call(self.types.check_trip, SERVICE, request, ANSWER_SECONDS)
         expect(response is not None, "check_trip did not answer.")

@@ -13,7 +13,7 @@ check = group("definitions")
 ASPECTS = tuple(interfaces.Aspect)
 TABLE_HINTS = (
     "Compare your file with the exercise's table, line by line.",
-    "A field is `type name`, a default stands behind it, a constant is `type NAME = value`.",
+    "A field is `type name`, a default follows the name, and a constant is `type NAME = value`.",
 )
 
 
@@ -32,7 +32,7 @@ TABLE_HINTS = (
 )
 @hint(*TABLE_HINTS)
 def test_robot_status(workspace: Workspace) -> None:
-    """msg/RobotStatus.msg is as the table says."""
+    """msg/RobotStatus.msg matches the table."""
     expect_definition(workspace, contract.ROBOT_STATUS, *ASPECTS)
 
 
@@ -51,7 +51,7 @@ def test_robot_status(workspace: Workspace) -> None:
 )
 @hint(*TABLE_HINTS)
 def test_check_trip(workspace: Workspace) -> None:
-    """srv/CheckTrip.srv is as the table says."""
+    """srv/CheckTrip.srv matches the table."""
     expect_definition(workspace, contract.CHECK_TRIP, *ASPECTS)
 
 
@@ -70,14 +70,14 @@ def test_check_trip(workspace: Workspace) -> None:
 )
 @hint(*TABLE_HINTS)
 def test_drive_distance(workspace: Workspace) -> None:
-    """action/DriveDistance.action is as the table says."""
+    """action/DriveDistance.action matches the table."""
     expect_definition(workspace, contract.DRIVE_DISTANCE, *ASPECTS)
 
 
 @check(points=1, covers="interfaces-manifest", doc=contract.DEFINE)
 @hint("Read the first error above; `colcon build` in a terminal shows the same.")
-@hint("rosidl_generate_interfaces in CMakeLists.txt names each file, and std_msgs behind DEPENDENCIES.")
-@hint("package.xml says ament_cmake in <export>.")
+@hint("rosidl_generate_interfaces in CMakeLists.txt must name each file, and std_msgs after DEPENDENCIES.")
+@hint("package.xml must contain the build type ament_cmake in <export>.")
 def test_builds(builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds both packages."""
     for diagnosis in builds.values():
