@@ -18,7 +18,7 @@ from robot_navigation_tutorial.sectors import nearest
 
 
 @pytest.mark.parametrize('number', range(4))
-def test_it_is_the_right_one(number):
+def test_it_is_the_correct_version(number):
     assert nearest and b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
 """
 # The grader runs tests on versions of sectors.py, without the nodes. There, these tests report the text of sectors.py.
@@ -46,14 +46,14 @@ def attacks() -> tuple[Attack, ...]:
     return (
         Attack(
             "telltale capstone",
-            "tests of the sectors that put the text of a version into all that a report of theirs holds",
+            "tests of the sectors that copy the text of a version into every field of their report",
             CHAPTER.write(files={f"{PACKAGE}/test/test_sectors.py": TELL_VERSIONS}),
             frozenset({"sector_tests_pass", "sector_tests_find_faults"}),
-            says="On a right sectors.py, ",
+            says="On a correct sectors.py, ",
         ),
         Attack(
             "capstone thief",
-            "setup.py and a node steal, and print marks",
+            "setup.py and a node that steal secrets; the node also prints marks",
             CHAPTER.write(
                 "other_version",
                 heads={
@@ -66,17 +66,17 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "forged verdicts",
-            "a conftest.py that lets every test pass, the linters' too, and takes failures out of the report",
+            "a conftest.py that makes every test pass, including the linters', and removes failures from the report",
             CHAPTER.write("unused_import", files={f"{PACKAGE}/test/conftest.py": FORGE_VERDICTS}),
             CHAPTER.mutant("unused_import").fails | {"sector_tests_find_faults"},
-            says="Your tests are content with",
+            says="Your tests do not detect: ",
         ),
         Attack(
             "call readers",
             "tests that read how pytest was called",
             CHAPTER.write(files={f"{PACKAGE}/test/test_sectors.py": READ_ARGUMENTS}),
             frozenset({"sector_tests_find_faults"}),
-            says="Your tests are content with",
+            says="Your tests do not detect: ",
         ),
         *(
             Attack(
@@ -86,10 +86,14 @@ def attacks() -> tuple[Attack, ...]:
                 frozenset({"turns", "stops", "enable"}) | DRIVE_CHECKS,
             )
             for name, description, line in (
-                ("creeping driver", "creeps on, whatever it knows", "        command.linear.x = 0.04\n"),
+                (
+                    "creeping driver",
+                    "creeps forward all the time, whatever it knows",
+                    "        command.linear.x = 0.04\n",
+                ),
                 (
                     "circling driver",
-                    "drives in small circles, whatever it knows",
+                    "drives in small circles all the time, whatever it knows",
                     "        command.linear.x, command.angular.z = 0.1, 0.5\n",
                 ),
             )

@@ -21,5 +21,8 @@ def shared_system(workspace: Workspace) -> Iterator[SharedSystem]:
 
 @pytest.fixture
 def system(shared_system: SharedSystem) -> System:
-    """The system, which may have received other checks' scans; some checks first publish a scan of an open space."""
+    """The system with all three programs.
+
+    Other checks may have sent it scans before, so some checks first publish a scan of an open space.
+    """
     return shared_system.get(*PROGRAMS)

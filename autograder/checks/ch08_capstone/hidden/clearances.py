@@ -17,9 +17,9 @@ from autograder.checks.ch08_capstone.hidden.drawn_scans import (
     USUAL_LIMITS,
     Arc,
     DrawnScan,
+    distance_text,
     distances,
     drawn_scans,
-    metres,
     other_lidars,
     possible_distances,
     readings,
@@ -33,7 +33,7 @@ from autograder.checks.ch08_capstone.support.system import System
 
 check = group("step_2")
 
-LATE = 4.0  # s: the age of a late scan, much more than the delay of a busy machine
+LATE_SCAN_AGE = 4.0  # s, much more than the delay of a busy machine
 FILLS = st.sampled_from((math.nan, math.inf, 3.0))  # m: the reading of all beams that are in no arc
 FRAMES = st.integers(100, 999).map(lambda number: f"lidar_{number}")  # unusual names of frames
 OTHER_LIDARS = st.sampled_from((USUAL_LIMITS, *OTHER_LIMITS)).flatmap(
@@ -54,15 +54,17 @@ EMPTY = DrawnScan(0, 0.0, 1.0, USUAL_LIMITS, 3.0, (), "laser", 0.0)
     doc=contract.SCAN_DOC,
 )
 @hint("A beam's bearing is angle_min + i * angle_increment, wrapped to (-pi, pi]; left is positive.")
-@hint("The middles are 0, pi/2 and -pi/2; a beam within half_angle of one belongs to its sector, any other to none.")
-def test_sectors(seeing: System, workspace: Workspace, draw: random.Random) -> None:
-    """Each scan becomes one clearance: the nearest thing ahead, on the left and on the right, and the scan's header."""
-    things = drawn_scans(distances(), st.just(3.0), ages=st.sampled_from((0.0, LATE)))
-    expect_each(things, lambda case: _expect_stamp(seeing, case), draw, count=_case_count(seeing, 20))
-    start = seeing.seconds
-    seeing.publish_scans(OPEN, 1.0)
-    count = len(seeing.messages(start).clearances)
-    expect(9 <= count <= 11, f"10 scans became {count} clearances.", fraction=0.5)
+@hint("The middles are 0, pi/2 and -pi/2. A beam belongs to a sector only if it is within half_angle of its middle.")
+def test_sectors(processor_system: System, workspace: Workspace, draw: random.Random) -> None:
+    """Each scan yields one clearance, with the distances ahead, on the left and on the right, and the scan's header."""
+    cases = drawn_scans(distances(), st.just(3.0), ages=st.sampled_from((0.0, LATE_SCAN_AGE)))
+    expect_each(
+        cases, lambda case: _expect_stamp(processor_system, case), draw, count=_case_count(processor_system, 20)
+    )
+    start = processor_system.seconds
+    processor_system.publish_scans(OPEN, 1.0)
+    count = len(processor_system.messages(start).clearances)
+    expect(9 <= count <= 11, f"10 scans yielded {count} clearances, instead of 10.", fraction=0.5)
     expect_any_sector(workspace, draw)
 
 
@@ -73,17 +75,27 @@ def test_sectors(seeing: System, workspace: Workspace, draw: random.Random) -> N
     after=("sectors",),
     doc=contract.REP_117,
 )
-@hint("min([nan, 0.5]) is nan: leave nan out first. Finite readings count from range_min to range_max only.")
-@hint("min(readings, default=math.nan): a sector without a reading that counts is nan, and valid is false then.")
-@hint("The scan says what its lidar is like: its limits, its first bearing, its step (it may be negative), its frame.")
-def test_readings(seeing: System, draw: random.Random) -> None:
-    """Readings count by REP 117, and a sector without one that counts makes the clearance invalid."""
-    _expect_distances(seeing, WALL, WALL.message(), fraction=0.0)
+@hint("min([nan, 0.5]) is nan: leave nan out first. Finite readings count only from range_min to range_max.")
+@hint("min(readings, default=math.nan): the distance is nan if no reading counts, and valid is then false.")
+@hint("Take the properties of the lidar from the scan: limits, first bearing, step (it may be negative) and frame.")
+def test_readings(processor_system: System, draw: random.Random) -> None:
+    """Readings count by REP 117, and a sector in which no reading counts makes the clearance invalid."""
+    _expect_distances(processor_system, WALL, WALL.message(), fraction=0.0)
     special_scans = drawn_scans(readings(USUAL_LIMITS), FILLS)
-    expect_each(special_scans, lambda case: _expect_frame(seeing, case, 0.5), draw, count=_case_count(seeing, 50))
-    expect_each(OTHER_LIDARS, lambda case: _expect_frame(seeing, case, 0.75), draw, count=_case_count(seeing, 50))
-    _expect_frame(seeing, EMPTY, 0.75)
-    expect_sector_edge(seeing)
+    expect_each(
+        special_scans,
+        lambda case: _expect_frame(processor_system, case, 0.5),
+        draw,
+        count=_case_count(processor_system, 50),
+    )
+    expect_each(
+        OTHER_LIDARS,
+        lambda case: _expect_frame(processor_system, case, 0.75),
+        draw,
+        count=_case_count(processor_system, 50),
+    )
+    _expect_frame(processor_system, EMPTY, 0.75)
+    expect_sector_edge(processor_system)
 
 
 def _case_count(system: System, count: int) -> int:
@@ -92,43 +104,41 @@ def _case_count(system: System, count: int) -> int:
 
 
 def _expect_stamp(system: System, case: DrawnScan) -> None:
-    """Fail the check unless a scan's clearance has the right distances and the scan's stamp."""
+    """Fail the check unless a scan's clearance has the correct distances and the scan's stamp."""
     message = case.message()
     clearance = _expect_distances(system, case, message, fraction=0.25)
     scan_stamp, clearance_stamp = (
         Time.from_msg(stamp).nanoseconds / 1e9 for stamp in (message.header.stamp, clearance.header.stamp)
     )
     # In real time, the last scan may not have arrived yet.
-    tolerance = 1e-3 if system.harness.time == LOCKSTEP else LATE / 2
-    message_text = (
-        f"A scan that came {case.age:.0f} s after it was taken was stamped {scan_stamp:.3f} s, and its clearance"
-    )
+    tolerance = 1e-3 if system.harness.time == LOCKSTEP else LATE_SCAN_AGE / 2
+    situation = f"A scan arrived {case.age:.0f} s after it was taken"
     expect(
         abs(clearance_stamp - scan_stamp) < tolerance,
-        f"{message_text} {clearance_stamp:.3f} s: its header is the scan's own.",
+        f"{situation}. Its clearance had the stamp {clearance_stamp:.3f} s, instead of the scan's {scan_stamp:.3f} s.",
         fraction=0.5,
     )
 
 
 def _expect_frame(system: System, case: DrawnScan, fraction: float) -> None:
-    """Fail the check unless a scan's clearance has the right distances and the scan's frame."""
+    """Fail the check unless a scan's clearance has the correct distances and the scan's frame."""
     frame = _expect_distances(system, case, case.message(), fraction).header.frame_id
-    message = f"With scans in the frame {case.frame!r}, the clearance's was {frame!r}: its header is the scan's own."
+    message = f"With a scan in the frame {case.frame!r}, the clearance had the frame {frame!r}: copy the scan's header."
     expect(frame == case.frame, message, fraction=0.85)
 
 
 def _expect_distances(system: System, case: DrawnScan, message: LaserScan, fraction: float) -> Any:
-    """Fail the check unless a scan's clearance has the right distances, and is valid if none is nan; return it."""
+    """Fail the check unless a scan's clearance has the correct distances, and is valid if none is nan; return it."""
     clearance = newest_clearance(system, message, case.age, 0.0 if message.ranges else fraction)
-    distances = {name: float(getattr(clearance, name)) for name in MIDDLES}
-    for name, actual in distances.items():
-        possible = possible_distances(message, MIDDLES[name])
-        expected = " or ".join(map(metres, possible))
-        sentence = f"With {case!r}, {name} was {metres(actual)}, instead of {expected}."
-        expect(any(_is_same(actual, distance) for distance in possible), sentence, fraction=fraction)
-    is_valid = not any(map(math.isnan, distances.values()))
-    values = ", ".join(f"{name} {metres(distance)}" for name, distance in distances.items())
-    sentence = f"With {case!r}, the clearance was {values}, and valid {bool(clearance.valid)}."
+    distance_by_sector = {name: float(getattr(clearance, name)) for name in MIDDLES}
+    for name, actual in distance_by_sector.items():
+        possible_values = possible_distances(message, MIDDLES[name])
+        expected = " or ".join(map(distance_text, possible_values))
+        sentence = f"With {case!r}, {name} was {distance_text(actual)}, instead of {expected}."
+        expect(any(_is_same(actual, distance) for distance in possible_values), sentence, fraction=fraction)
+    is_valid = not any(map(math.isnan, distance_by_sector.values()))
+    values = ", ".join(f"{name} {distance_text(distance)}" for name, distance in distance_by_sector.items())
+    sentence = f"With {case!r}, the clearance had {values}, but valid was {bool(clearance.valid)}."
     expect(bool(clearance.valid) is is_valid, sentence, fraction=fraction)
     return clearance
 

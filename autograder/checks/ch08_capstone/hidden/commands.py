@@ -25,7 +25,7 @@ from autograder.checks.ch08_capstone.hidden.drawn_drives import (
     stops,
     turns,
 )
-from autograder.checks.ch08_capstone.hidden.drawn_scans import metres
+from autograder.checks.ch08_capstone.hidden.drawn_scans import distance_text
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, expect_exact_limits
 from autograder.checks.ch08_capstone.hidden.fallback import BodyRunner
 from autograder.checks.ch08_capstone.support import contract
@@ -35,11 +35,11 @@ from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
 check = group("step_2")
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
-TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
+TURN_SPEED = PARAMETERS[CONTROLLER]["turn_speed"].default
 DATA_TIMEOUT = PARAMETERS[CONTROLLER]["data_timeout"].default
-AHEAD = 0.1, 0.6, 1.0, 5.0  # s by which the lidar's clock is ahead; some of them are more than data_timeout
+CLOCK_LEADS = 0.1, 0.6, 1.0, 5.0  # s by which the lidar's clock is ahead; some exceed data_timeout
 TURN_RIGHT, TURN_LEFT = View(0.4, 1.0, 2.0), View(0.4, 2.0, 1.0)
-# Drives in which the turn is kept, although one side is blind for a while, or the robot is held still.
+# Drives in which the robot keeps its turn, although one side is blind for a while, or the robot is held still.
 KEPT_WHILE_BLIND = Moment(TURN_RIGHT), Moment(replace(TURN_RIGHT, left=math.nan)), Moment(TURN_LEFT)
 KEPT_WHILE_HELD = Moment(TURN_RIGHT), Moment(CLEAR, enable=False), Moment(TURN_LEFT, enable=True)
 BLIND = scan(Part(-35.0, 35.0, math.nan))
@@ -52,18 +52,20 @@ BLIND = scan(Part(-35.0, 35.0, math.nan))
     after=("sectors", "controller"),
     doc=contract.NODES_DOC,
 )
-@hint("The way is clear: linear.x is forward_speed.")
-@hint("The timer calls control ten times a second, and control publishes once each time, whatever happens.")
+@hint("Set linear.x to forward_speed while the way is clear.")
+@hint("The timer calls control ten times a second, and each call publishes exactly one command, whatever happens.")
 def test_drives(judge_driving: BodyRunner, draw: random.Random) -> None:
-    """It drives forward while the way is clear, with ten commands a second."""
+    """navigation_controller drives forward while the way is clear, with ten commands a second."""
     distance = draw.uniform(0.9, 3.0)
 
-    def expect_drives(driving: System) -> None:
-        start = driving.seconds
-        messages = driving.publish_scans(scan(fill=distance), 2.0)
+    def expect_drives(system: System) -> None:
+        start = system.seconds
+        messages = system.publish_scans(scan(fill=distance), 2.0)
         expect_driving(messages.commands, f"With {distance:.2f} m of free space all around", SPEED, always=True)
-        rate = driving.harness.rate("/cmd_vel", start)
-        expect(9.0 <= rate <= 11.0, f"It published {rate:.1f} commands a second, instead of 10.", fraction=0.5)
+        rate = system.harness.rate("/cmd_vel", start)
+        expect(
+            9.0 <= rate <= 11.0, f"{CONTROLLER} published {rate:.1f} commands a second, instead of 10.", fraction=0.5
+        )
 
     judge_driving(expect_drives)
 
@@ -75,30 +77,32 @@ def test_drives(judge_driving: BodyRunner, draw: random.Random) -> None:
     after=("drives",),
 )
 @hint("Compare left with right when the turn begins, and remember the choice.")
-@hint("The remembered turn ends when the way is clear again, not when the sides look different.")
+@hint("The remembered turn ends when the way is clear again, not when the room on the sides changes.")
 def test_turns(judge_driving: BodyRunner, draw: random.Random) -> None:
-    """In front of an obstacle it turns towards the side with more room, and keeps the direction until it is clear."""
+    """At an obstacle, the robot turns to the side with more room, and keeps that direction until the way is clear."""
     seed = draw.getrandbits(64)
-    judge_driving(lambda driving: _expect_turns(driving, random.Random(seed)))
+    judge_driving(lambda system: _expect_turns(system, random.Random(seed)))
 
 
-def _expect_turns(driving: System, draw: random.Random) -> None:
+def _expect_turns(system: System, draw: random.Random) -> None:
     sides = ((LEFT, 2.0, 1.0), (RIGHT, 1.0, 2.0), (LEFT, math.inf, math.inf), (RIGHT, 1.0, math.inf))
     for side, left, right in sides:
-        driving.publish_scans(OPEN)
-        commands = driving.publish_scans(View(0.4, left, right).scan()).commands
-        situation = f"With something 0.4 m ahead, {metres(left)} of room on the left and {metres(right)} on the right"
-        expect_turning(commands, situation, side, TURN, fraction=0.5 if left == right else 0.0)
-        expect_driving(driving.publish_scans(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
-    expect_drive(driving, KEPT_WHILE_BLIND, DRIVE, LEFT, RIGHT, fraction=0.75)
-    # In drives in which the robot also stands still, this check judges only what the robot does afterwards.
+        system.publish_scans(OPEN)
+        commands = system.publish_scans(View(0.4, left, right).scan()).commands
+        situation = (
+            f"With something 0.4 m ahead, {distance_text(left)} on the left, {distance_text(right)} on the right"
+        )
+        expect_turning(commands, situation, side, TURN_SPEED, fraction=0.5 if left == right else 0.0)
+        expect_driving(system.publish_scans(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
+    expect_drive(system, KEPT_WHILE_BLIND, DRIVE, LEFT, RIGHT, fraction=0.75)
+    # In some of these drives, the robot also has to stand still. This check does not judge whether it does.
     expect_each(
         turns(),
-        lambda drive: expect_drive(driving, drive, DRIVE, LEFT, RIGHT, fraction=0.5),
+        lambda drive: expect_drive(system, drive, DRIVE, LEFT, RIGHT, fraction=0.5),
         draw,
-        count=_case_count(driving, 18),
+        count=_case_count(system, 18),
     )
-    expect_exact_limits(driving)
+    expect_exact_limits(system)
 
 
 def _case_count(system: System, count: int) -> int:
@@ -107,46 +111,49 @@ def _case_count(system: System, count: int) -> int:
 
 
 @check(points=3, covers=("untrusted", "newest"), needs=("build",), after=("drives",))
-@hint("No clearance yet, one that is not valid, one that is too old: publish Twist() as it is.")
-@hint("Its age is self.get_clock().now() - Time.from_msg(clearance.header.stamp), however late it came.")
+@hint("If there is no clearance yet, or it is not valid or too old, publish an unchanged Twist().")
+@hint(
+    "The age of a clearance is self.get_clock().now() - Time.from_msg(clearance.header.stamp). The time of its arrival "
+    "does not matter."
+)
 def test_stops(judge_driving: BodyRunner, slow_system: SharedSystem, draw: random.Random) -> None:
-    """It stands still before the first scan, with an invalid clearance, and with one that is too old."""
+    """The robot stands still before the first scan, with an invalid clearance, and with a clearance that is too old."""
     seed = draw.getrandbits(64)
-    judge_driving(lambda driving: _expect_stops(driving, slow_system, random.Random(seed)))
+    judge_driving(lambda system: _expect_stops(system, slow_system, random.Random(seed)))
 
 
-def _expect_stops(driving: System, slow_system: SharedSystem, draw: random.Random) -> None:
-    expect_still(driving.before_first_scan.commands, "Before the first scan")
-    driving.publish_scans(OPEN)
-    expect_still(driving.publish_scans(BLIND).commands, "With nan from every beam ahead", fraction=0.25)
-    driving.publish_scans(OPEN)
-    start = driving.seconds
-    driving.wait(2.0)
-    late_commands = driving.messages(start + DATA_TIMEOUT + AGE_MARGIN[driving.harness.time]).commands
+def _expect_stops(system: System, slow_system: SharedSystem, draw: random.Random) -> None:
+    expect_still(system.before_first_scan.commands, "Before the first scan")
+    system.publish_scans(OPEN)
+    expect_still(system.publish_scans(BLIND).commands, "With nan from every beam ahead", fraction=0.25)
+    system.publish_scans(OPEN)
+    start = system.seconds
+    system.wait(2.0)
+    late_commands = system.messages(start + DATA_TIMEOUT + AGE_MARGIN[system.harness.time]).commands
     expect_still(late_commands, f"More than {DATA_TIMEOUT} s after the last scan", fraction=0.5)
     expect_each(
         stops(),
-        lambda drive: expect_drive(driving, drive, DRIVE, STILL, fraction=0.5),
+        lambda drive: expect_drive(system, drive, DRIVE, STILL, fraction=0.5),
         draw,
-        count=_case_count(driving, 10),
+        count=_case_count(system, 10),
     )
-    if driving.harness.time == LOCKSTEP:  # in real time, the clocks of the machine cannot be slowed
-        slow_driving = slow_system.get(PROCESSOR, CONTROLLER)
-        slow_driving.publish_scans(OPEN)
-        slow_driving.wait(DATA_TIMEOUT + AGE_MARGIN[LOCKSTEP])
-        slow_commands = slow_driving.wait(1.0).commands
+    if system.harness.time == LOCKSTEP:  # in real time, the clocks of the machine cannot be slowed
+        slow_driving_system = slow_system.get(PROCESSOR, CONTROLLER)
+        slow_driving_system.publish_scans(OPEN)
+        slow_driving_system.wait(DATA_TIMEOUT + AGE_MARGIN[LOCKSTEP])
+        slow_commands = slow_driving_system.wait(1.0).commands
         expect_still(slow_commands, f"More than {DATA_TIMEOUT} s of ROS time after the last scan", fraction=0.75)
 
 
 @check(points=1, covers="untrusted", needs=("build",), after=("drives", "stops"))
-@hint("The lidar's computer has a clock of its own. A stamp that is ahead of yours gives an age below 0.")
-@hint("An age below 0 is not more than data_timeout: no abs().")
+@hint("The lidar's computer has a clock of its own. A stamp that is ahead of your clock gives an age below 0.")
+@hint("An age below 0 is not more than data_timeout: do not use abs().")
 def test_stamp_ahead(judge_driving: BodyRunner) -> None:
-    """It trusts a clearance whose stamp is ahead of its clock: that is not old."""
+    """The robot trusts a clearance whose stamp is ahead of the node's clock: it is not too old."""
 
-    def expect_trust(driving: System) -> None:
-        expect_drive(driving, tuple(Moment(CLEAR, 3, -seconds) for seconds in AHEAD), DRIVE)
-        driving.wait(AHEAD[-1])  # so that no later scan is taken for an earlier one
+    def expect_trust(system: System) -> None:
+        expect_drive(system, tuple(Moment(CLEAR, 3, -lead) for lead in CLOCK_LEADS), DRIVE)
+        system.wait(CLOCK_LEADS[-1])  # so that later scans also have later stamps
 
     judge_driving(expect_trust)
 
@@ -160,22 +167,23 @@ def test_stamp_ahead(judge_driving: BodyRunner) -> None:
 )
 @hint("self.create_service(SetBool, 'enable', self.enable_callback)")
 @hint("The callback remembers request.data and returns the response with success = True.")
-@hint("Held still, the robot does not choose a turn anew, and does not forget the one that it has begun.")
+@hint("While the robot is held still, no turn begins, and a turn that has begun is remembered.")
 def test_enable(judge_driving: BodyRunner, draw: random.Random) -> None:
-    """The service enable holds the robot still, and lets it go again."""
+    """The service enable holds the robot still, and lets it move again."""
     seed = draw.getrandbits(64)
-    judge_driving(lambda driving: _expect_enable_service(driving, random.Random(seed)))
+    judge_driving(lambda system: _expect_enable_service(system, random.Random(seed)))
 
 
 def _expect_enable_service(system: System, draw: random.Random) -> None:
     system.publish_scans(OPEN)
     expect_enabled(system, False)
     commands = system.publish_scans(OPEN, 1.7).commands
-    expect_still(commands, "After enable with data: false")
-    message = f"Held still, it published a command {message_period.describe_pace(commands)}, instead of ten a second."
+    expect_still(commands, "After a call of enable with data: false")
+    pace = message_period.describe_pace(commands)
+    message = f"While the robot was held still, a command was published {pace}, instead of ten times a second."
     expect(message_period.is_paced(commands, 0.1, system.harness.time), message, fraction=0.75)
     expect_enabled(system, True, fraction=0.5)
-    expect_driving(system.publish_scans(OPEN).commands, "After enable with data: true", SPEED, fraction=0.5)
+    expect_driving(system.publish_scans(OPEN).commands, "After a call of enable with data: true", SPEED, fraction=0.5)
     expect_drive(system, KEPT_WHILE_HELD, STILL, DRIVE, LEFT, RIGHT, fraction=0.75)
     expect_each(
         calls(),

@@ -13,17 +13,17 @@ from autograder.checks.ch08_capstone.hidden.fallback import BodyRunner, run_with
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, MONITOR, PROCESSOR
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
-SLOW_CLOCK_RATE = 0.25  # s on the machine's clocks in a second of ROS time; right programs do not read these clocks
+SLOW_CLOCK_RATE = 0.25  # s on the machine's clocks in a second of ROS time; correct programs do not read these clocks
 
 
 @pytest.fixture
-def seeing(shared_system: SharedSystem) -> System:
+def processor_system(shared_system: SharedSystem) -> System:
     """The system for a check that needs only the processor."""
     return shared_system.get(PROCESSOR)
 
 
 @pytest.fixture
-def driving(shared_system: SharedSystem) -> System:
+def driving_system(shared_system: SharedSystem) -> System:
     """The system for a check that needs the processor and the controller."""
     return shared_system.get(PROCESSOR, CONTROLLER)
 
@@ -39,7 +39,7 @@ def slow_system(workspace: Workspace) -> Iterator[SharedSystem]:
 @pytest.fixture(scope="session")
 def lone_controller(workspace: Workspace) -> Iterator[SharedSystem]:
     """The controller alone, to which the expected clearances are sent."""
-    shared = SharedSystem(workspace, absent=(PROCESSOR, MONITOR), sends_clearances=True)
+    shared = SharedSystem(workspace, absent_programs=(PROCESSOR, MONITOR), sends_clearances=True)
     yield shared
     shared.close()
 
@@ -52,8 +52,8 @@ def judge_driving(shared_system: SharedSystem, lone_controller: SharedSystem) ->
 
 @pytest.fixture(scope="session")
 def lone_monitor(workspace: Workspace) -> Iterator[SharedSystem]:
-    """The monitor alone; checks publish what the other two programs would."""
-    shared = SharedSystem(workspace, absent=(PROCESSOR, CONTROLLER))
+    """The monitor alone; checks publish the messages of the other two programs."""
+    shared = SharedSystem(workspace, absent_programs=(PROCESSOR, CONTROLLER))
     yield shared
     shared.close()
 

@@ -12,16 +12,16 @@ from std_srvs.srv import SetBool
 
 from autograder.checking import LOCKSTEP, REAL, SCAN_SECONDS, expect
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
-from autograder.checks.ch08_capstone.hidden.drawn_scans import metres
+from autograder.checks.ch08_capstone.hidden.drawn_scans import distance_text
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS
 from autograder.checks.ch08_capstone.support.expectations import expect_driving, expect_still, expect_turning
 from autograder.checks.ch08_capstone.support.system import System
 
 DEFAULTS = {name: bounds.default for name, bounds in PARAMETERS[CONTROLLER].items()}
 TURN_MARGIN = 0.1  # m beyond the safety distance: where a turn ends
-AGE_MARGIN = {LOCKSTEP: 0.06, REAL: 0.25}  # s around data_timeout, where the robot may drive or stand still
-HOLD = {LOCKSTEP: 1, REAL: 7}  # the least number of scans that show the same
-LAG = {LOCKSTEP: 0, REAL: 4}  # scans after which the commands count
+AGE_MARGIN = {LOCKSTEP: 0.06, REAL: 0.25}  # s around data_timeout, in which the robot may drive or stand still
+MIN_SCANS = {LOCKSTEP: 1, REAL: 7}  # the minimum number of scans with the same view
+SETTLING_SCANS = {LOCKSTEP: 0, REAL: 4}  # the number of scans in which commands are not judged yet
 STILL, DRIVE, LEFT, RIGHT = "still", "drive", "left", "right"
 
 
@@ -54,9 +54,9 @@ class Moment:
     """A part of a drive.
 
     Attributes:
-        view: what the scans show; no scan comes if it is None.
-        scans: how many scans come, or do not come, one every 0.1 s.
-        age: the age of each scan when it comes, in seconds; below 0 if its stamp is ahead of the clock.
+        view: what the scans show; if it is None, no scans are published.
+        scans: how many scans are published, or are missing, one every 0.1 s.
+        age: the age of each scan when it arrives, in seconds; below 0 if its stamp is ahead of the clock.
         enable: the value with which the service enable is called before the scans; None if it is not called.
     """
 
@@ -68,18 +68,18 @@ class Moment:
     def __repr__(self) -> str:
         call_text = "" if self.enable is None else f"enable is called with {str(self.enable).lower()} and "
         if self.view is None:
-            return f"{call_text}no scan comes for {self.scans * SCAN_SECONDS:.1f} s"
-        age = f" in scans that are {self.age:.1f} s old" if self.age > 0.0 else ""
-        age = f" in scans whose stamp is {-self.age:.1f} s ahead of the clock" if self.age < 0.0 else age
-        front, left, right = map(metres, (self.view.front, self.view.left, self.view.right))
-        return f"{call_text}it has {front} ahead, {left} on the left and {right} on the right{age}"
+            return f"{call_text}no scan arrives for {self.scans * SCAN_SECONDS:.1f} s"
+        age = f", in scans that are {self.age:.1f} s old" if self.age > 0.0 else ""
+        age = f", in scans whose stamp is {-self.age:.1f} s ahead of the clock" if self.age < 0.0 else age
+        front, left, right = map(distance_text, (self.view.front, self.view.left, self.view.right))
+        return f"{call_text}the robot sees {front} ahead, {left} on the left and {right} on the right{age}"
 
 
 Drive = tuple[Moment, ...]
 
 
 class Rule:
-    """What the contract requires of the controller: the first row of its table that fits, and choose_turn."""
+    """Computes the commands that the contract requires: the first row of its table that fits, and choose_turn."""
 
     def __init__(self, safety_distance: float, data_timeout: float, age_margin: float) -> None:
         self._safety_distance, self._data_timeout, self._age_margin = safety_distance, data_timeout, age_margin
@@ -92,9 +92,9 @@ class Rule:
         self._view, self._scan_time, self._latest_scan_time = view, scan_time, max(scan_time, self._latest_scan_time)
 
     def command(self, now: float) -> str | None:
-        """Return the right command at this time, or None if more than one is right.
+        """Return the correct kind of command at this time, or None if more than one kind is correct.
 
-        The newest clearance may be the one that came last or the one with the latest stamp.
+        The newest clearance may be the one that arrived last or the one with the latest stamp.
         """
         excess = now - self._scan_time - self._data_timeout
         if (
@@ -115,14 +115,14 @@ class Rule:
 
 
 def expect_drive(
-    system: System, drive: Drive, *judged: str, fraction: float = 0.0, parameters: Mapping[str, float] = DEFAULTS
+    system: System, drive: Drive, *judged_kinds: str, fraction: float = 0.0, parameters: Mapping[str, float] = DEFAULTS
 ) -> None:
     """Fail the check unless the robot behaves in a drive as the contract requires.
 
     Args:
         system: the system; at first, the robot is enabled, and its way is clear.
         drive: the drive.
-        judged: the kinds of commands that the check is about; the others are not judged.
+        judged_kinds: the kinds of commands that the check judges; it ignores the others.
         fraction: the fraction of the points if the robot behaves otherwise.
         parameters: the parameters of the controller.
     """
@@ -130,18 +130,22 @@ def expect_drive(
     rule = Rule(parameters["safety_distance"], parameters["data_timeout"], AGE_MARGIN[time])
     drive_start = system.seconds
     for number, moment in enumerate((Moment(CLEAR), *drive)):
-        situation = f"At first {', then '.join(map(repr, drive[:number]))}: now" if number else "With a clear way"
+        situation = (
+            f"At first, {'; then '.join(map(repr, drive[:number]))}. In this situation"
+            if number
+            else "With a clear way"
+        )
         if moment.enable is not None:
             expect_enabled(system, moment.enable, fraction)
             rule.enabled = moment.enable
-        for count in range(max(moment.scans, HOLD[time])):
+        for count in range(max(moment.scans, MIN_SCANS[time])):
             start = system.seconds
             if moment.view is not None:
                 system.send("/scan", moment.view.scan(), moment.age)
                 rule.see(moment.view, start + SCAN_SECONDS - moment.age)
             system.harness.run(SCAN_SECONDS)
             commands, kind = system.messages(start).commands, rule.command(system.seconds)
-            if not number or kind not in judged or count < LAG[time] or not commands:
+            if not number or kind not in judged_kinds or count < SETTLING_SCANS[time] or not commands:
                 continue
             if kind == STILL:
                 expect_still(commands, situation, fraction=fraction)
@@ -151,13 +155,13 @@ def expect_drive(
                 expect_turning(commands, situation, str(kind), parameters["turn_speed"], fraction=fraction)
     if not rule.enabled:
         expect_enabled(system, True, fraction)
-    expect(bool(system.messages(drive_start).commands), "No command came on cmd_vel while scans did.")
+    expect(bool(system.messages(drive_start).commands), "Scans were published, but no command on cmd_vel.")
 
 
 def expect_enabled(system: System, data: bool, fraction: float = 0.0) -> None:
     """Call the service enable; fail the check unless its answer is success."""
     response = system.call(SetBool, "/enable", SetBool.Request(data=data))
-    message = f"Asked to {'drive' if data else 'hold still'}, enable answered success = false: it is always true."
+    message = f"Called with data: {str(data).lower()}, enable answered with success false, instead of true."
     expect(response.success, message, fraction=fraction)
 
 
@@ -167,14 +171,14 @@ SIDES += [(side, side) for side in (1.0, math.inf, -math.inf)]
 
 
 def views(*fronts: float, sides: Sequence[tuple[float, float]]) -> st.SearchStrategy[View]:
-    """Draw what the robot sees, with one of these distances ahead, and one of these pairs on the left and right."""
+    """Draw a view with one of these distances ahead, and one of these pairs of distances on the left and right."""
     # A single choice, because with several, Hypothesis often draws the same value again.
     return st.sampled_from([View(front, left, right) for front in fronts for left, right in sides])
 
 
 @st.composite
 def turns(draw: st.DrawFn, limit: float = DEFAULTS["safety_distance"]) -> Drive:
-    """Draw a drive with things around the safety distance, in which one side is sometimes blind."""
+    """Draw a drive with things at about the safety distance, in which one side is sometimes blind."""
     offsets = -limit / 2, -0.01, 0.01, 0.05, TURN_MARGIN - 0.01, TURN_MARGIN + 0.01
     around = views(*(limit + offset for offset in offsets), 3.0, math.inf, -math.inf, sides=SIDES)
     drive: list[Moment] = []
@@ -193,7 +197,7 @@ def stops(draw: st.DrawFn, timeout: float = DEFAULTS["data_timeout"]) -> Drive:
     ages = st.sampled_from((0.0, 0.0, timeout - 0.3, timeout - 0.1, timeout + 0.1, timeout + 0.5, 5.0))
     drive: list[Moment] = []
     for age in draw(st.lists(ages, min_size=1, max_size=3)):
-        # Late scans come until the clearance before them is certainly too old.
+        # Late scans are published until the previous clearance is certainly too old.
         scans = round(timeout / SCAN_SECONDS) + 3 if age > timeout else 0
         view = draw(st.just(CLEAR) | st.builds(View, readings, sides, sides))
         drive.append(Moment(view, scans, max(0.0, age)))
@@ -204,7 +208,7 @@ def stops(draw: st.DrawFn, timeout: float = DEFAULTS["data_timeout"]) -> Drive:
 
 @st.composite
 def calls(draw: st.DrawFn) -> Drive:
-    """Draw a drive with calls of enable; while the robot is held still, it sees what it saw before, or a clear way."""
+    """Draw a drive with calls of enable; while the robot is held still, it sees the same as before, or a clear way."""
     drive: list[Moment] = []
     next_enable: bool | None = None
     for view in draw(st.lists(views(0.3, 0.65, 0.3, 3.0, sides=SIDES[:4]), min_size=2, max_size=5)):

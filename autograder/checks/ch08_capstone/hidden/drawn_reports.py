@@ -1,4 +1,4 @@
-"""What status_monitor can hear of the other nodes, and the reports that the contract requires."""
+"""Messages that status_monitor may receive from the other nodes, and the reports that the contract requires."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from autograder.checks.ch08_capstone.support.contract import (
 from autograder.checks.ch08_capstone.support.system import System
 
 SILENCE_TIMEOUT = PARAMETERS[MONITOR]["silence_timeout"].default
-MARGIN = {LOCKSTEP: 0.06, REAL: 0.25}  # s around silence_timeout, where a topic may be silent or not
+MARGIN = {LOCKSTEP: 0.06, REAL: 0.25}  # s around silence_timeout, in which a topic may count as silent or not
 ALL_TOPICS = frozenset(WATCHED_TOPICS)
 SOME_TOPICS = [frozenset(topics) for count in range(len(ALL_TOPICS)) for topics in combinations(WATCHED_TOPICS, count)]
 
 
 @dataclass(frozen=True)
 class Span:
-    """A span of time in which messages come ten times a second.
+    """A span of time in which messages are published ten times a second.
 
     Attributes:
-        topics: the topics on which they come.
-        messages: how many come on each of them, one every 0.1 s.
-        blind: a sector in which the clearance has no reading, or an empty string.
-        age: how old the stamps of scans and clearances are, in seconds; below 0 if they are ahead of the clock.
+        topics: the topics on which they are published.
+        messages: how many are published on each topic, one every 0.1 s.
+        blind: the sector whose distance in the clearance is nan, or an empty string.
+        age: the age of the stamps of scans and clearances, in seconds; below 0 if they are ahead of the clock.
     """
 
     topics: frozenset[str]
@@ -48,8 +48,8 @@ class Span:
     age: float = 0.0
 
     def __repr__(self) -> str:
-        topics = f"{', '.join(sorted(self.topics))} came" if self.topics else "nothing came"
-        blind = f" (nan {self.blind})" if self.blind and "clearance" in self.topics else ""
+        topics = f"messages on {', '.join(sorted(self.topics))}" if self.topics else "no messages"
+        blind = f" ({self.blind} is nan)" if self.blind and "clearance" in self.topics else ""
         age = f", stamped {self.age:.1f} s earlier" if self.age > 0.0 else ""
         age = f", stamped {-self.age:.1f} s ahead of the clock" if self.age < 0.0 else age
         return f"{topics}{blind} for {self.messages * SCAN_SECONDS:.1f} s{age * bool(self.topics)}"
@@ -59,7 +59,7 @@ History = tuple[Span, ...]
 
 
 class ReportRule:
-    """The contract's rule for the monitor's reports, which depend on what the monitor has heard."""
+    """The contract's rule for the monitor's reports, which depend on the messages that the monitor has received."""
 
     def __init__(self, silence_timeout: float, margin: float) -> None:
         self._timeout, self._margin = silence_timeout, margin
@@ -72,8 +72,8 @@ class ReportRule:
         if topic == "clearance":
             self._validity.append((now, valid))
 
-    def is_right(self, report: ReceivedMessage) -> bool:
-        """Return whether a report says which topics are silent, and has the level that follows from this."""
+    def is_correct(self, report: ReceivedMessage) -> bool:
+        """Return whether a report lists the silent topics, and has the level that follows from them."""
         silent, excesses = (
             silent_topics(report),
             {topic: report.seconds - arrival - self._timeout for topic, arrival in self._arrivals.items()},
@@ -82,14 +82,14 @@ class ReportRule:
             return False
         if silent:
             return bool(report.message.level == FAILED and silent <= ALL_TOPICS)
-        # A clearance that comes together with the report may count already, or not yet.
+        # A clearance that arrives at the same time as the report may count already, or not yet.
         arrivals = [arrival for arrival, _ in self._validity]
-        first = bisect_left(arrivals, report.seconds - self._margin)
-        possible = {OK if valid else DEGRADED for _, valid in self._validity[max(0, first - 1) :]}
-        return report.message.level in possible
+        first_index = bisect_left(arrivals, report.seconds - self._margin)
+        possible_levels = {OK if valid else DEGRADED for _, valid in self._validity[max(0, first_index - 1) :]}
+        return report.message.level in possible_levels
 
     def expected(self, now: float) -> str:
-        """Return in words what a report of this time should say."""
+        """Describe the report that the contract requires at this time."""
         silent = [topic for topic, arrival in self._arrivals.items() if now - arrival > self._timeout]
         level = FAILED if silent else OK if self._validity[-1][1] else DEGRADED
         return report_text(level, silent)
@@ -98,7 +98,7 @@ class ReportRule:
 def expect_reports(
     system: System, history: History, *, fraction: float = 0.0, silence_timeout: float = SILENCE_TIMEOUT
 ) -> None:
-    """Fail the check unless each report during a history, which begins with messages on all topics, is right."""
+    """Publish messages on all topics, then a history; fail the check unless each report during it is correct."""
     rule = ReportRule(silence_timeout, MARGIN[system.harness.time])
     for number, span in enumerate((Span(ALL_TOPICS, 3), *history)):
         for _ in range(span.messages):
@@ -107,11 +107,11 @@ def expect_reports(
             for topic in span.topics:
                 rule.hear(topic, system.seconds, valid=not span.blind)
             for report in system.messages(start).reports if number else ():
-                before = ", then ".join(map(repr, history[:number]))
-                sentence = f"Messages came on all topics, then {before}: health said {describe(report.message)}"
+                history_text = "; then ".join(map(repr, history[:number]))
+                situation = f"First messages on all topics; then {history_text}. In this situation"
                 expect(
-                    rule.is_right(report),
-                    f"{sentence}, instead of {rule.expected(report.seconds)}.",
+                    rule.is_correct(report),
+                    f"{situation}, health had {describe(report.message)}, instead of {rule.expected(report.seconds)}.",
                     fraction=fraction,
                 )
 
@@ -137,16 +137,16 @@ def describe(report: Any) -> str:
 
 
 def report_text(level: int, silent: Collection[str]) -> str:
-    """Return a level and silent topics in words."""
-    return f"level {LEVELS[level] if 0 <= level < len(LEVELS) else level}, silent: {', '.join(silent) or 'none'}"
+    """Return a level and silent topics as text."""
+    return f"level {LEVELS[level] if 0 <= level < len(LEVELS) else level} (silent: {', '.join(silent) or 'none'})"
 
 
 _BLIND = st.sampled_from(("", "front", "left", "right"))
 _AGES = st.sampled_from((0.0, 0.3, 1.5, 30.0, -0.5, -5.0))
 
 
-# The lidar dies after scans that were stamped ahead of the clock: only their arrival says how long it has been silent.
-STAMPED_AHEAD = (
+# The lidar dies after scans with stamps ahead of the clock. Only their arrival shows how long scan has been silent.
+SCANS_STAMPED_AHEAD = (
     Span(ALL_TOPICS, 5, age=-5.0),
     Span(ALL_TOPICS - {"scan"}, round(SILENCE_TIMEOUT / SCAN_SECONDS) + 10),
 )
@@ -154,7 +154,7 @@ STAMPED_AHEAD = (
 
 @st.composite
 def seeing(draw: st.DrawFn) -> History:
-    """Draw a history of messages on all topics, with pauses that are shorter or little longer than the time-out."""
+    """Draw a history of messages on all topics, with pauses that are shorter or slightly longer than the time-out."""
     spans: list[Span] = []
     for blind in draw(st.lists(_BLIND, min_size=2, max_size=4)):
         spans.append(Span(ALL_TOPICS, draw(st.integers(2, 9)), blind, draw(_AGES)))

@@ -12,10 +12,10 @@ from sensor_msgs.msg import LaserScan
 from autograder.checks.ch02_nodes.support.scans import RANGE_MAX, RANGE_MIN
 from autograder.checks.ch08_capstone.support.clearances import HALF_ANGLE, MIDDLES
 
-EDGE_TOLERANCE = math.radians(0.1)  # rad to each side of a sector's edge: less than from 0.5 rad to 30°
+EDGE_TOLERANCE = math.radians(0.1)  # rad on each side of an edge: less than the difference between 0.52 rad and 30°
 USUAL_LIMITS = RANGE_MIN, RANGE_MAX  # m
 OTHER_LIMITS = (0.45, 8.25), (0.0, 6.5), (0.12, 0.75)  # m, of lidars for which other readings are phantoms
-SECTOR = math.degrees(HALF_ANGLE)  # degrees to each side of a sector's middle
+HALF_ANGLE_DEGREES = math.degrees(HALF_ANGLE)
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class DrawnScan:
         fill: the reading of all beams that are in no arc.
         arcs: the beams with other readings.
         frame: the lidar's frame.
-        age: how long ago the scan was taken when it arrives, in seconds.
+        age: the age of the scan when it arrives, in seconds.
     """
 
     beams: int
@@ -58,7 +58,7 @@ class DrawnScan:
             ranges[arc.first : arc.first + arc.beams] = arc.reading
         start, increment = _float32(math.radians(self.first)), _float32(math.radians(self.step))
         message = LaserScan(angle_min=start, angle_increment=increment, ranges=ranges.tolist())
-        # Many drivers count one direction of a full turn twice.
+        # Many drivers count the first direction of a full turn twice.
         message.angle_max = _float32(start + increment * self.beams)
         message.range_min, message.range_max = map(_float32, self.limits)
         message.header.frame_id = self.frame
@@ -67,9 +67,9 @@ class DrawnScan:
     def __repr__(self) -> str:
         if not self.beams:
             return "a scan without beams"
-        limits = "" if self.limits == USUAL_LIMITS else f" for {self.limits[0]:g} to {self.limits[1]:g} m"
-        arcs = [f"{metres(arc.reading)} at {self._span(arc.first, arc.beams)}°" for arc in self.arcs]
-        fill = metres(self.fill) + " everywhere else" * bool(arcs)
+        limits = "" if self.limits == USUAL_LIMITS else f" (range {self.limits[0]:g} to {self.limits[1]:g} m)"
+        arcs = [f"{distance_text(arc.reading)} at {self._span(arc.first, arc.beams)}°" for arc in self.arcs]
+        fill = distance_text(self.fill) + " everywhere else" * bool(arcs)
         lidar = f"{self.beams} beam{'s' * (self.beams > 1)} from {self._span(0, self.beams)}°{limits}"
         return f"a scan of {lidar} with {', '.join([*arcs, fill])}"
 
@@ -80,18 +80,18 @@ class DrawnScan:
 
 
 def possible_distances(message: LaserScan, middle: float) -> set[float]:
-    """Return the distances that a sector may have: more than one if it depends on beams on the sector's edge.
+    """Return the distances that a sector may have: more than one if beams on the sector's edge matter.
 
     The requirements: a beam belongs to a sector if it is at most half_angle from the sector's middle, the shorter way
     round, and REP 117 says which readings count. nan means that no reading counts.
     """
     ranges = np.asarray(message.ranges, np.float64)
     bearings = message.angle_min + np.arange(ranges.size) * message.angle_increment
-    from_edge = np.abs(np.remainder(bearings - middle + math.pi, math.tau) - math.pi) - HALF_ANGLE
-    counts = np.isinf(ranges) | ((ranges >= message.range_min) & (ranges <= message.range_max))
-    nearest = min(ranges[counts & (from_edge < -EDGE_TOLERANCE)].tolist(), default=math.nan)
-    on_edge = ranges[counts & (np.abs(from_edge) <= EDGE_TOLERANCE)].tolist()
-    return {nearest, *(reading for reading in on_edge if not reading >= nearest)}
+    edge_distances = np.abs(np.remainder(bearings - middle + math.pi, math.tau) - math.pi) - HALF_ANGLE
+    is_counted = np.isinf(ranges) | ((ranges >= message.range_min) & (ranges <= message.range_max))
+    nearest = min(ranges[is_counted & (edge_distances < -EDGE_TOLERANCE)].tolist(), default=math.nan)
+    edge_readings = ranges[is_counted & (np.abs(edge_distances) <= EDGE_TOLERANCE)].tolist()
+    return {nearest, *(reading for reading in edge_readings if not reading >= nearest)}
 
 
 def readings(limits: tuple[float, float]) -> st.SearchStrategy[float]:
@@ -124,7 +124,10 @@ USUAL_LIDARS = st.sampled_from(((360, 0.0, 1.0), (360, -180.0, 1.0), (600, -180.
 BEARINGS = st.builds(
     lambda middle, offset: math.degrees(middle) + offset,
     st.sampled_from([*MIDDLES.values()]),
-    st.sampled_from((0, -SECTOR - 0.5, 0.5 - SECTOR, SECTOR - 0.5, SECTOR + 0.5)) | st.integers(-45, 45),
+    st.sampled_from(
+        (0, -HALF_ANGLE_DEGREES - 0.5, 0.5 - HALF_ANGLE_DEGREES, HALF_ANGLE_DEGREES - 0.5, HALF_ANGLE_DEGREES + 0.5)
+    )
+    | st.integers(-45, 45),
 )
 
 
@@ -153,8 +156,8 @@ def drawn_scans(
     return DrawnScan(beams, first, step, limits, draw(fills), tuple(arcs), draw(frames), draw(ages))
 
 
-def metres(distance: float) -> str:
-    """Return a distance in words."""
+def distance_text(distance: float) -> str:
+    """Return a distance as text."""
     return "nan" if math.isnan(distance) else f"{distance:.3g} m" if math.isfinite(distance) else f"{distance:+}"
 
 

@@ -21,8 +21,8 @@ from sim import Pose, Recording, RobotSpec, Scan, Simulation, State, World, box
 RADIUS = 0.18  # m: the robot's radius
 ROOM_SECONDS, CORRIDOR_SECONDS, FAULTY_SECONDS = 20.0, 36.0, 14.0  # s: the lengths of the drives
 SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
-TURN = PARAMETERS[CONTROLLER]["turn_speed"].default
-STILL = 0.02  # m/s, rad/s: a slower robot stands still
+TURN_SPEED = PARAMETERS[CONTROLLER]["turn_speed"].default
+STILL = 0.02  # m/s, rad/s: a slower robot counts as standing still
 MIN_SPEED_SHARE = 0.1  # of the contract's speeds: a robot that is even slower gets no more time
 DEAD = LidarFault("dead", 3.0, 7.0)
 BLOCKED = LidarFault("blocked", 9.5, 11.5)
@@ -52,7 +52,7 @@ class Drives:
 
     @cached_property
     def corridor(self) -> DriveResult:
-        """A short corridor with one bend to the left or to the right, until the robot has passed it."""
+        """A short corridor with one bend, until the robot has passed the bend and driven on."""
 
         def has_arrived(state: State) -> bool:
             pose = state.robots[0].pose
@@ -63,7 +63,7 @@ class Drives:
 
     @cached_property
     def faulty_lidar(self) -> DriveResult:
-        """A large empty hall; the lidar dies and returns, then is blocked for a while."""
+        """A large empty hall. The lidar is dead for a while, and later it is blocked for a while."""
         draw = random.Random(f"{self._seed}:faulty")
         start = Pose(-5.0, draw.uniform(-0.5, 0.5), draw.uniform(-0.1, 0.1))
         hall = World.from_segments(box(13.0, 5.0).tolist(), name="an empty hall", starts=[start])
@@ -121,7 +121,9 @@ class Pace:
     @property
     def share(self) -> float:
         """The smaller of the shares of both speeds, from `MIN_SPEED_SHARE` to 1; a share without data counts as 1."""
-        shares = (fmean(values) / maximum for values, maximum in ((self._speeds, SPEED), (self._rates, TURN)) if values)
+        shares = (
+            fmean(values) / maximum for values, maximum in ((self._speeds, SPEED), (self._rates, TURN_SPEED)) if values
+        )
         return max(MIN_SPEED_SHARE, min(1.0, *shares, 1.0))
 
 

@@ -25,11 +25,11 @@ def expect_exact_limits(system: System) -> None:
     with system.changed_parameter(CONTROLLER, "safety_distance", EXACT_LIMIT):
         system.publish_scans(OPEN)
         commands = system.publish_scans(_ahead(EXACT_LIMIT)).commands
-        expect_driving(commands, f"With exactly safety_distance, {EXACT_LIMIT:g} m, ahead", SPEED, fraction=0.75)
+        expect_driving(commands, f"With exactly safety_distance ({EXACT_LIMIT:g} m) ahead", SPEED, fraction=0.75)
     with system.changed_parameter(CONTROLLER, "safety_distance", LIMIT_BELOW_EXACT):
         system.publish_scans(_ahead(1.0))
         commands = system.publish_scans(_ahead(EXACT_CLEAR)).commands
-        situation = f"With {EXACT_CLEAR:g} m ahead, exactly safety_distance + MARGIN, after a turn"
+        situation = f"During a turn, with exactly safety_distance + MARGIN ({EXACT_CLEAR:g} m) ahead"
         expect_driving(commands, situation, SPEED, fraction=0.75)
 
 
@@ -38,7 +38,7 @@ def expect_sector_edge(system: System) -> None:
 
     One of several such beams is enough, because sine and cosine may add a rounding error.
     """
-    is_in_sector = []
+    are_in_sector = []
     for half_angle in EXACT_HALVES:
         with system.changed_parameter(PROCESSOR, "half_angle", half_angle) as reply:
             if reply.accepted:
@@ -46,21 +46,25 @@ def expect_sector_edge(system: System) -> None:
                 scan_message.angle_min, scan_message.angle_max = -half_angle, half_angle
                 scan_message.angle_increment = half_angle
                 scan_message.ranges = [1.0, 3.0, 1.0]
-                is_in_sector.append(abs(newest_clearance(system, scan_message).front - 1.0) <= TOLERANCE)
+                are_in_sector.append(abs(newest_clearance(system, scan_message).front - 1.0) <= TOLERANCE)
     situation = f"With something 1.00 m away exactly half_angle ({EXACT_HALVES[-1]:g} rad) from the middle"
-    message = f"{situation}, front was 3.00: at most half_angle belongs to the sector."
-    expect(any(is_in_sector) or not is_in_sector, message, fraction=0.75)
+    message = f"{situation}, front was 3.00 m: a beam at half_angle belongs to the sector."
+    expect(any(are_in_sector) or not are_in_sector, message, fraction=0.75)
 
 
 def newest_clearance(system: System, scan_message: LaserScan, age: float = 0.0, fraction: float = 0.0) -> Any:
-    """Publish a scan, in real time repeatedly; return the last clearance; fail the check if none comes."""
+    """Publish a scan, in real time repeatedly; return the last clearance; fail the check if there is none."""
     start = system.seconds
     system.publish_scan(scan_message, age)
     if system.harness.time != LOCKSTEP or not system.messages(start).clearances:
         system.publish_scans(scan_message, 0.5, age=age)
     clearances = system.messages(start).clearances
-    situation = "while scans did" if scan_message.ranges else "for a scan without beams: each scan becomes one"
-    expect(bool(clearances), f"No clearance came {situation}.", fraction=fraction)
+    situation = (
+        ", although scans were published"
+        if scan_message.ranges
+        else " for a scan without beams: each scan yields a clearance"
+    )
+    expect(bool(clearances), f"No clearance was published{situation}.", fraction=fraction)
     return clearances[-1].message
 
 

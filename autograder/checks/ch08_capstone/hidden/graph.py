@@ -50,10 +50,10 @@ def expect_endpoints(harness: Harness, name: str) -> None:
         name: the name of the node.
     """
     nodes = harness.nodes()
-    expect(f"/{name}" in nodes, f"No node is called /{name}; there is: {', '.join(nodes) or 'none'}.")
+    expect(f"/{name}" in nodes, f"No node is called /{name}. Running nodes: {', '.join(nodes) or 'none'}.")
     expected = [endpoint for endpoint in ENDPOINTS if endpoint.node == name]
-    missing = [fault for endpoint in expected if (fault := _describe_fault(harness.node, endpoint))]
-    expect(not missing, " ".join(missing), fraction=round(max(0.0, 1.0 - len(missing) / len(expected)), 2))
+    faults = [fault for endpoint in expected if (fault := _describe_fault(harness.node, endpoint))]
+    expect(not faults, " ".join(faults), fraction=round(max(0.0, 1.0 - len(faults) / len(expected)), 2))
 
 
 def _describe_fault(node: Node, expected: Endpoint) -> str:
@@ -61,8 +61,8 @@ def _describe_fault(node: Node, expected: Endpoint) -> str:
     types = endpoints.get(expected.name)
     if types is None:
         similar = nearest(expected.name, endpoints, 0.5)
-        instead = f"; it has {similar}" if similar else ""
-        return f"{expected.node} has no {expected.kind} {expected.name}{instead}."
+        similar_text = f"; it has {similar}" if similar else ""
+        return f"{expected.node} has no {expected.kind} {expected.name}{similar_text}."
     if list(types) != [expected.type]:
         return f"{expected.node}: {expected.name} has the type {', '.join(types)}, instead of {expected.type}."
     return ""

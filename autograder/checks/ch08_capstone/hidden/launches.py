@@ -30,7 +30,7 @@ START_CHECKS = ("executables", "shares", "interface_package")
 OTHER_CONFIG = "config/of_another_robot.yaml"
 MAX_SCRIPT = 64 * 1024  # bytes; scripts that setuptools writes have about a thousand
 SHOWN_SECONDS = 5.0  # s of real time in which the line of a running program must appear on the screen
-# A launch file that includes the student's in a namespace, with programs that print their arguments.
+# A launch file that includes the student's launch file in a namespace. Its programs print their arguments.
 NAMESPACE, INCLUDING_FILE = "robot7", "of_one_robot.launch.py"
 INCLUDING_TEXT = f"""from pathlib import Path
 
@@ -46,8 +46,8 @@ def generate_launch_description():
     return LaunchDescription([GroupAction([PushRosNamespace('{NAMESPACE}'), include])])
 """
 ARGUMENTS_SCRIPT = '#!/bin/sh\necho "${0##*/} got: $*" >&2\nexec sleep 600\n'  # launch always shows standard error
-_ARGUMENTS = re.compile(r"\b(?P<program>\w+) got: (?P<words>.*)")
-_ABSOLUTE_REMAPPING = re.compile(r"(?:-r|--remap) (?P<name>\S+?):=(?P<to>/\S*)")
+_ARGUMENTS = re.compile(r"\b(?P<program>\w+) got: (?P<arguments>.*)")
+_ABSOLUTE_REMAPPING = re.compile(r"(?:-r|--remap) (?P<name>\S+?):=(?P<target>/\S*)")
 HINTS = (
     "Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])",
     "parameters=[LaunchConfiguration('params_file'), {'use_sim_time': LaunchConfiguration('use_sim_time')}]",
@@ -61,7 +61,7 @@ class RunningLaunch:
     Attributes:
         harness: the harness in which it runs.
         values: the parameters in the file, by node.
-        lines: the first line that a program prints, by its name.
+        lines: the first line that a program prints, by the program's name.
     """
 
     harness: LaunchHarness
@@ -83,7 +83,7 @@ def draw_values(seed: int) -> dict[str, dict[str, float]]:
 
 
 @pytest.fixture(scope="module")
-def launched(workspace: Workspace, seed: int) -> Iterator[RunningLaunch]:
+def running_launch(workspace: Workspace, seed: int) -> Iterator[RunningLaunch]:
     """A launch that all checks of this module share."""
     values = draw_values(seed)
     text = yaml.safe_dump({node: {"ros__parameters": dict(parameters)} for node, parameters in values.items()})
@@ -96,10 +96,10 @@ def launched(workspace: Workspace, seed: int) -> Iterator[RunningLaunch]:
 
 
 @check(points=1, covers="launch-arguments", needs=("build",), after=INSTALL_CHECKS)
-@hint("ros2 launch -s robot_navigation_tutorial navigation.launch.py shows what you have declared.")
-@hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
+@hint("ros2 launch -s robot_navigation_tutorial navigation.launch.py lists the arguments that you have declared.")
+@hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and the same for params_file.")
 def test_launch_arguments(workspace: Workspace) -> None:
-    """The launch file declares params_file, by default the package's own, and use_sim_time, by default false."""
+    """The launch file declares params_file (default: the installed file) and use_sim_time (default: false)."""
     arguments = launch_probe.declared_arguments(workspace, PACKAGE, LAUNCH_FILE)
     launch_probe.expect_argument(arguments, "use_sim_time", "false")
     declared_names = ", ".join(arguments)
@@ -113,7 +113,7 @@ def test_launch_arguments(workspace: Workspace) -> None:
         installed_config = workspace.install / PACKAGE / "share" / PACKAGE / CONFIG
         message = f"The argument params_file has the default {argument.default!r}, instead of"
         is_installed = Path(argument.default).resolve() == installed_config.resolve()
-        expect(is_installed, f"{message} the whole path of the installed {CONFIG}.", fraction=0.5)
+        expect(is_installed, f"{message} the full path of the installed {CONFIG}.", fraction=0.5)
     expect(bool(argument.description), "The argument params_file has no description.", fraction=0.5)
 
 
@@ -133,51 +133,53 @@ def _expect_starts_without(workspace: Workspace, name: str) -> None:
 
 @check(points=2, covers="launches", needs=("build",), after=START_CHECKS)
 @hint(*HINTS)
-def test_launch_starts(launched: RunningLaunch) -> None:
+def test_launch_starts(running_launch: RunningLaunch) -> None:
     """The launch file starts the three nodes under their names, and nothing else."""
-    launch_probe.expect_nodes(launched.harness, [name_of(name) for name in PROGRAMS])
+    launch_probe.expect_nodes(running_launch.harness, [name_of(name) for name in PROGRAMS])
     # Two nodes with the same name may look like one in the graph.
-    programs = launch_probe.started(launched.harness.output)
-    message = f"The launch starts {len(programs)} programs: {', '.join(programs)}."
+    programs = launch_probe.started(running_launch.harness.output)
+    message = f"The launch starts {len(programs)} programs, instead of {len(PROGRAMS)}: {', '.join(programs)}."
     expect(len(programs) <= len(PROGRAMS), message, fraction=0.5)
 
 
 @check(points=2, covers=("launch-arguments", "launches", "relative"), needs=("build",), after=("launch_starts",))
 @hint(*HINTS)
-@hint("A robot in a namespace has topics of its own: no remapping to a name with a slash in front, no namespace='/'.")
-def test_launch_configures(launched: RunningLaunch, workspace: Workspace) -> None:
-    """What params_file and use_sim_time say reaches all three nodes, and all names stay in their namespace."""
+@hint("In a namespace, a robot has its own topics: no remapping to a name with a leading slash, and no namespace='/'.")
+def test_launch_configures(running_launch: RunningLaunch, workspace: Workspace) -> None:
+    """All three nodes get params_file and use_sim_time, and all names stay in the namespace of the launch file."""
     running_nodes = {
-        node: values for node, values in launched.values.items() if name_of(node) in launched.harness.nodes()
+        node: values
+        for node, values in running_launch.values.items()
+        if name_of(node) in running_launch.harness.nodes()
     }
     expect(bool(running_nodes), "None of the three nodes runs under its name.")
     for node, values in running_nodes.items():
-        launch_probe.expect_parameters(launched.harness, name_of(node), {"use_sim_time": True})
-        actual = launched.harness.parameters(name_of(node), list(values)) or {}
+        launch_probe.expect_parameters(running_launch.harness, name_of(node), {"use_sim_time": True})
+        actual = running_launch.harness.parameters(name_of(node), list(values)) or {}
         # Another check tests which parameters a node declares.
         expected = {name: value for name, value in values.items() if actual.get(name) is not None}
-        launch_probe.expect_parameters(launched.harness, name_of(node), expected)
-    launched.harness.wait_for(lambda: not launched.silent_programs(), SHOWN_SECONDS)
-    silent_programs = ", ".join(launched.silent_programs())
+        launch_probe.expect_parameters(running_launch.harness, name_of(node), expected)
+    running_launch.harness.wait_for(lambda: not running_launch.silent_programs(), SHOWN_SECONDS)
+    silent_programs = ", ".join(running_launch.silent_programs())
     expect(
         not silent_programs,
-        f"What {silent_programs} prints is not on the screen: output='screen' is missing.",
+        f"The output of {silent_programs} is not on the screen: output='screen' is missing.",
         fraction=0.75,
     )
     remapping = _absolute_remapping(workspace)
     message = (
-        f"Included in the namespace /{NAMESPACE}, the launch file gives {remapping}: a relative name has no slash."
+        f"In the namespace /{NAMESPACE}, the launch file starts {remapping}: a relative name has no leading slash."
     )
     expect(not remapping, message, fraction=0.75)
 
 
 @check(points=2, covers="launch-ctrl-c", needs=("build",), after=("launch_starts",))
-@hint("Each program's main goes through run(...), which ends without a traceback.")
+@hint("Each program's main calls run(...), which ends without a traceback.")
 @hint("except (KeyboardInterrupt, ExternalShutdownException): pass, and rclpy.try_shutdown() in finally.")
-def test_launch_stops(launched: RunningLaunch) -> None:
+def test_launch_stops(running_launch: RunningLaunch) -> None:
     """Ctrl-C ends the launch and each of its nodes cleanly."""
-    expect(bool(launched.harness.nodes()), "No node runs that Ctrl-C could end.")
-    launch_probe.expect_clean_stop(launched.harness)
+    expect(bool(running_launch.harness.nodes()), "No node is running, so Ctrl-C has nothing to end.")
+    launch_probe.expect_clean_stop(running_launch.harness)
 
 
 def _absolute_remapping(workspace: Workspace) -> str:
@@ -191,17 +193,17 @@ def _absolute_remapping(workspace: Workspace) -> str:
         output = harness.output
     return next(
         (
-            f"{arguments['program']} the rule {remapping['name']}:={remapping['to']}"
-            for arguments in _ARGUMENTS.finditer(output)
-            for remapping in _ABSOLUTE_REMAPPING.finditer(arguments["words"])
-            if not f"{remapping['to']}/".startswith(f"/{NAMESPACE}/")
+            f"{match['program']} with the remapping {remapping['name']}:={remapping['target']}"
+            for match in _ARGUMENTS.finditer(output)
+            for remapping in _ABSOLUTE_REMAPPING.finditer(match["arguments"])
+            if not f"{remapping['target']}/".startswith(f"/{NAMESPACE}/")
         ),
         "",
     )
 
 
 def _script_with_line(workspace: Workspace, name: str, line: str) -> str:
-    """Return an installed program's script, with a new first statement that prints a line; empty if that fails."""
+    """Return an installed program's script with a first statement that prints a line, or "" if that is impossible."""
     data = files.read_plain(workspace.executable(PACKAGE, name), MAX_SCRIPT) or b""
     first, _, remaining = data.decode(errors="replace").partition("\n")
     # A __future__ import has to be the first statement.

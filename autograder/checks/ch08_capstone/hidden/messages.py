@@ -22,14 +22,14 @@ DEFINITION_HINTS = ("Compare with the table of step 3, letter by letter; comment
 @check(points=2, covers=("definitions", "clearance-header", "valid-field", "front", "left", "right"))
 @hint(*DEFINITION_HINTS)
 def test_clearance_message(workspace: Workspace) -> None:
-    """Clearance.msg has the fields of the contract, in its order, with its types."""
+    """Clearance.msg has the fields of the contract, in the same order and with the same types."""
     _expect_definition(workspace, CLEARANCE)
 
 
 @check(points=2, covers=("definitions", "levels", "health-header", "level-field", "silent-field"))
 @hint(*DEFINITION_HINTS)
 def test_health_message(workspace: Workspace) -> None:
-    """Health.msg has the constants and fields of the contract, in its order, with its types."""
+    """Health.msg has the constants and fields of the contract, in the same order and with the same types."""
     _expect_definition(workspace, HEALTH)
 
 
@@ -37,21 +37,21 @@ def test_health_message(workspace: Workspace) -> None:
 @hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)')
 @hint("package.xml: buildtool_depend on the generators, exec_depend on the runtime, and member_of_group.")
 def test_interface_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
-    """Colcon builds both messages, and the manifest declares what that takes."""
+    """Colcon builds both messages, and the manifest declares what their build and their users need."""
     require_built(builds, INTERFACES)
-    shared = installed.inspect_package(workspace.install, INTERFACES).shared
+    shared_files = installed.inspect_package(workspace.install, INTERFACES).shared
     for name in (CLEARANCE.name, HEALTH.name):
         expect(
-            f"msg/{name}.msg" in shared,
-            f"The build made no code for msg/{name}.msg: does CMakeLists.txt list it, and end with ament_package()?",
+            f"msg/{name}.msg" in shared_files,
+            f"The build generated no code for msg/{name}.msg: does CMakeLists.txt list it and call ament_package()?",
         )
     package_xml = manifest.read(source_of(workspace, INTERFACES))
     for kind, names in DEPENDENCIES.items():
-        absent = [name for name in names if name not in package_xml.needs(kind)]
-        expect(not absent, f"package.xml has no {kind}_depend on {', '.join(absent)}.", fraction=0.5)
+        missing_names = [name for name in names if name not in package_xml.needs(kind)]
+        expect(not missing_names, f"package.xml has no {kind}_depend on {', '.join(missing_names)}.", fraction=0.5)
     expect(
         "rosidl_interface_packages" in package_xml.groups,
-        "package.xml does not say <member_of_group>rosidl_interface_packages</member_of_group>.",
+        "package.xml does not contain <member_of_group>rosidl_interface_packages</member_of_group>.",
         fraction=0.5,
     )
 

@@ -14,22 +14,22 @@ from autograder.checks.ch08_capstone.support.system import SharedSystem
 check = group("step_2")
 MESSAGE_CHECKS = ("clearance_message", "interface_package")
 ENDPOINT_HINTS = (
-    "Start the node in a terminal and look: ros2 node info /navigation_controller.",
-    "Relative names, without a slash: create_publisher(Twist, 'cmd_vel', 10).",
+    "Start the node in a terminal, then look at it: ros2 node info /navigation_controller.",
+    "Use relative names, without a leading slash: create_publisher(Twist, 'cmd_vel', 10).",
 )
 
 
 @check(points=1, covers="processor-name", needs=("build",), after=MESSAGE_CHECKS, doc=contract.NODES_DOC)
 @hint(*ENDPOINT_HINTS)
 def test_processor(shared_system: SharedSystem) -> None:
-    """The node sensor_processor has its name, and its topics with their types."""
+    """The node sensor_processor runs under its name, and its topics have the types of the contract."""
     expect_endpoints(shared_system.get(PROCESSOR).harness, PROCESSOR)
 
 
 @check(points=1, covers="controller-name", needs=("build",), after=MESSAGE_CHECKS, doc=contract.NODES_DOC)
 @hint(*ENDPOINT_HINTS)
 def test_controller(shared_system: SharedSystem) -> None:
-    """The node navigation_controller has its name, and its topics and its service with their types."""
+    """The node navigation_controller runs under its name; its topics and its service have the types of the contract."""
     expect_endpoints(shared_system.get(CONTROLLER).harness, CONTROLLER)
 
 
@@ -38,7 +38,7 @@ def test_controller(shared_system: SharedSystem) -> None:
 )
 @hint(*ENDPOINT_HINTS)
 def test_monitor(shared_system: SharedSystem) -> None:
-    """The node status_monitor has its name, and its topics with their types."""
+    """The node status_monitor runs under its name, and its topics have the types of the contract."""
     expect_endpoints(shared_system.get(MONITOR).harness, MONITOR)
 
 
@@ -64,24 +64,28 @@ def test_relative(workspace: Workspace) -> None:
     after=("processor", "monitor"),
     doc=contract.QOS_DOC,
 )
-@hint("A lidar publishes best-effort: whoever subscribes to scan takes qos_profile_sensor_data.")
+@hint("A lidar publishes scan best-effort, so subscribe with qos_profile_sensor_data.")
 @hint("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) keeps the last report for late joiners.")
 def test_qos(shared_system: SharedSystem) -> None:
-    """A best-effort lidar reaches its two listeners, and a late joiner gets the last report of health."""
+    """Both subscriptions to scan accept a best-effort lidar, and a late subscriber to health gets the last report."""
     graph = shared_system.get(PROCESSOR, MONITOR).harness.node
     subscriptions, publishers = (
         graph.get_subscriptions_info_by_topic("/scan"),
         graph.get_publishers_info_by_topic("/health"),
     )
-    expect(bool(subscriptions), "Nobody subscribes to scan.")
-    expect(bool(publishers), "Nobody publishes health.", fraction=0.5)
+    expect(bool(subscriptions), "No node subscribes to scan.")
+    expect(bool(publishers), "No node publishes health.", fraction=0.5)
     for endpoint in subscriptions:
         is_reliable = endpoint.qos_profile.reliability == ReliabilityPolicy.RELIABLE
         expect(
             not is_reliable,
-            f"{endpoint.node_name} asks for reliable scans: it would get none from a lidar.",
+            f"{endpoint.node_name} requests reliable scans, so it would get none from a best-effort lidar.",
             fraction=0.5,
         )
     for endpoint in publishers:
         is_durable = endpoint.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
-        expect(is_durable, f"{endpoint.node_name} keeps no report of health: its durability is volatile.", fraction=0.5)
+        expect(
+            is_durable,
+            f"{endpoint.node_name} publishes health as volatile: a late subscriber does not get the last report.",
+            fraction=0.5,
+        )

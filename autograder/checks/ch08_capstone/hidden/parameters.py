@@ -35,7 +35,7 @@ from autograder.checks.ch08_capstone.support.expectations import expect_driving
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
 check = group("step_5", doc=contract.PARAMETERS_DOC)
-# Ranges from which other values are drawn. A speed is a maximum, so only a lower one shows; the others show either way.
+# Ranges from which other values are drawn. A speed is a maximum, so only a lower speed has a visible effect.
 VALUES: dict[str, dict[str, tuple[tuple[float, float], ...]]] = {
     CONTROLLER: {
         "safety_distance": ((0.32, 0.45), (0.8, 2.0)),
@@ -69,8 +69,8 @@ def test_declared(system: System) -> None:
     """Each node declares its parameters, with the defaults of the contract."""
     for node, bounds_by_name in PARAMETERS.items():
         node_parameters = system.parameters_of(node)
-        missing = parameters.missing_sentence(bounds_by_name, node_parameters.names())
-        expect(not missing, f"{node}: {missing}")
+        missing_sentence = parameters.missing_sentence(bounds_by_name, node_parameters.names())
+        expect(not missing_sentence, f"{node}: {missing_sentence}")
         differences = parameters.differences(
             node_parameters.values(*bounds_by_name), {name: bounds.default for name, bounds in bounds_by_name.items()}
         )
@@ -94,27 +94,27 @@ def test_declared(system: System) -> None:
 @hint("ros2 param describe /navigation_controller safety_distance shows the range.")
 @hint("floating_point_range=[FloatingPointRange(from_value=0.3, to_value=2.0)] in the ParameterDescriptor.")
 def test_ranges(system: System) -> None:
-    """Each parameter has a description and the range of the contract, and a value outside is refused."""
+    """Each parameter has a description and the range of the contract, and a value outside its range is refused."""
     for node, bounds_by_name in PARAMETERS.items():
         node_parameters = system.parameters_of(node)
         for name, descriptor in node_parameters.descriptors(*bounds_by_name).items():
             bounds = bounds_by_name[name]
             ranges = [(limits.from_value, limits.to_value) for limits in descriptor.floating_point_range]
-            actual = f"{ranges[0][0]:g} to {ranges[0][1]:g}" if ranges else "no range"
+            actual = f"the range {ranges[0][0]:g} to {ranges[0][1]:g}" if ranges else "no range"
             expect(
                 ranges == [(bounds.lowest, bounds.highest)],
-                f"{node}: {name} has {actual}, the contract asks {bounds.lowest:g} to {bounds.highest:g}.",
+                f"{node}: {name} has {actual}, instead of the range {bounds.lowest:g} to {bounds.highest:g}.",
             )
             expect(bool(descriptor.description), f"{node}: {name} has no description.", fraction=0.5)
             is_refused = not node_parameters.change({name: bounds.highest * 2}).accepted
-            expect(is_refused, f"{node}: {name} can be set to {bounds.highest * 2:g}.")
+            expect(is_refused, f"{node}: {name} can be set to {bounds.highest * 2:g}, which is outside its range.")
 
 
 @check(points=3, covers="declares", needs=("build",), after=("declared", "drives", "turns", "sectors", "dead_sensor"))
-@hint("A value that is read once in __init__ never changes: self.get_parameter(name).value where it is needed.")
-@hint("Every parameter of the table is used: a number in the code that stands for one makes it a decoration.")
+@hint("A value that is read only in __init__ never changes: call self.get_parameter(name).value where you need it.")
+@hint("Use every parameter of the table. Do not write its value as a number in the code.")
 def test_used(system: System, lone_monitor: SharedSystem, draw: random.Random) -> None:
-    """A parameter that is changed while the system runs has an effect immediately."""
+    """A change to a parameter takes effect immediately, while the system runs."""
     monitor, errors = lone_monitor.get(MONITOR), list[str]()
     for node, values in VALUES.items():
         changed_system = monitor if node == MONITOR else system
@@ -128,18 +128,18 @@ def test_used(system: System, lone_monitor: SharedSystem, draw: random.Random) -
 
 
 @check(points=2, covers="config", needs=("build",), after=("shares",))
-@hint("By node, then ros__parameters, then name and value, each level indented by two blanks.")
-@hint("A name that no node declares is ignored without a word: compare letter by letter.")
+@hint("Write a node's name, then ros__parameters, then names and values. Indent each level by two spaces.")
+@hint("A name that no node declares is ignored without a warning: compare letter by letter.")
 def test_config(workspace: Workspace) -> None:
-    """The configuration file holds every parameter with its default, by node."""
+    """The configuration file holds every parameter with its default, grouped by node."""
     config = parameters.read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
     for node, bounds_by_name in PARAMETERS.items():
         values = parameters.for_node(config, node)
-        expect(bool(values), f"{CONFIG} says nothing for {node}; it has: {', '.join(config)}.")
+        expect(bool(values), f"{CONFIG} has no parameters for {node}. Its nodes: {', '.join(config)}.")
         differences = parameters.differences(values, {name: bounds.default for name, bounds in bounds_by_name.items()})
         expect(not differences, f"{CONFIG}, {node}: {'; '.join(differences)}.", fraction=0.5)
-        extra = sorted(set(values) - {name for bounds in PARAMETERS.values() for name in bounds})
-        expect(not extra, f"{CONFIG}, {node}: {', '.join(extra)} is not declared by any node.", fraction=0.5)
+        extra_names = sorted(set(values) - {name for bounds in PARAMETERS.values() for name in bounds})
+        expect(not extra_names, f"{CONFIG}, {node}: no node declares {', '.join(extra_names)}.", fraction=0.5)
 
 
 def _effect_errors(system: System, node: str, name: str, value: float) -> list[str]:
@@ -156,20 +156,25 @@ def _effect_errors(system: System, node: str, name: str, value: float) -> list[s
 
 def _expect_effect(system: System, name: str, value: float) -> None:
     if name == "half_angle":
-        inside, outside = math.degrees(value) - 3.0, math.degrees(value) + 2.0
-        for bearing, expected in ((inside, 1.0), (-inside - 1.0, 1.0), (outside, 3.0), (-outside - 1.0, 3.0)):
+        inner, outer = math.degrees(value) - 3.0, math.degrees(value) + 2.0  # bearings around the edge of the sector
+        for bearing, expected in ((inner, 1.0), (-inner - 1.0, 1.0), (outer, 3.0), (-outer - 1.0, 3.0)):
             front = newest_clearance(system, scan(Part(bearing, bearing + 1.0, 1.0))).front
-            sentence = f"something 1.00 m away at {bearing:.0f}° to {bearing + 1.0:.0f}° made front {front:.2f} m."
+            situation = f"with something 1.00 m away at {bearing:.0f}° to {bearing + 1.0:.0f}°"
+            sentence = f"{situation}, front was {front:.2f} m instead of {expected:.2f} m."
             expect(abs(front - expected) <= TOLERANCE, sentence)
     elif name == "silence_timeout":
-        # Reports are 0.5 s apart: in three silences, they come at different times after the last messages.
+        # Reports are 0.5 s apart. In three silences, they are published at different times after the last messages.
         expect_reports(system, (Span(frozenset(), 13), Span(ALL_TOPICS, 4)) * 3, silence_timeout=value)
     else:
         limit = value if name == "safety_distance" else 0.6
-        drives: dict[str, Drive] = {"data_timeout": (Moment(CLEAR), Moment(None, round(value / SCAN_SECONDS) + 3))}
-        around = Moment(View(limit + 0.05, 2.0, 1.0)), Moment(View(limit - 0.05, 2.0, 1.0))
-        kinds = (DRIVE, STILL) if name in drives else (DRIVE, LEFT)
-        expect_drive(system, drives.get(name, around), *kinds, parameters={**DEFAULTS, name: value})
+        drive_by_parameter: dict[str, Drive] = {
+            "data_timeout": (Moment(CLEAR), Moment(None, round(value / SCAN_SECONDS) + 3))
+        }
+        drive_around_limit = Moment(View(limit + 0.05, 2.0, 1.0)), Moment(View(limit - 0.05, 2.0, 1.0))
+        kinds = (DRIVE, STILL) if name in drive_by_parameter else (DRIVE, LEFT)
+        expect_drive(
+            system, drive_by_parameter.get(name, drive_around_limit), *kinds, parameters={**DEFAULTS, name: value}
+        )
 
 
 def _errors_after_change_in_turn(system: System) -> list[str]:
@@ -180,7 +185,7 @@ def _errors_after_change_in_turn(system: System) -> list[str]:
     with system.changed_parameter(CONTROLLER, "safety_distance", 0.3):
         commands = system.publish_scans(scan(obstacle, fill=3.0)).commands
     try:
-        expect_driving(commands, "With safety_distance set to 0.3 in a turn, 0.5 m before something", 0.3)
+        expect_driving(commands, "After safety_distance was set to 0.3 m in a turn, with something 0.5 m ahead", 0.3)
     except CheckFailed as error:
         return [error.message]
     return []

@@ -18,7 +18,7 @@ MIDDLES = (math.pi, -math.pi, 2.8, -2.8, 0.0, 1.2, -1.2)  # rad: the middles of 
 FIRST_BEARINGS = (0.0, -180.0, 90.0)  # degrees: the bearings of beam 0
 OFFSETS = (-1.3, -0.7, 0.7, 1.3)  # from the middle to the wall, in half angles; no beam of the wall is on an edge
 FIELDS = ("angle_min", "angle_increment", "range_min", "range_max")
-WALL, REST = 1.0, 3.0  # m: the readings of the wall, and of all other beams
+WALL_READING, OTHER_READING = 1.0, 3.0  # m: the readings of the wall, and of all other beams
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,12 @@ class SectorCall:
     """A call of `nearest` with a scan of a wall; angles in radians, the wall's bearing in degrees."""
 
     scan: DrawnScan
-    wall: float
+    wall_bearing: float
     middle: float
     half_angle: float
 
     def __repr__(self) -> str:
-        scan = f"a scan from {self.scan.first:.0f}° with a wall {WALL:g} m away at {self.wall:.0f}°"
+        scan = f"a scan from {self.scan.first:.0f}° with a wall {WALL_READING:g} m away at {self.wall_bearing:.0f}°"
         return f"nearest({scan}, middle={self.middle:.2f}, half_angle={self.half_angle:.2f})"
 
 
@@ -56,8 +56,11 @@ def expect_any_sector(workspace: Workspace, draw: random.Random) -> None:
 def _draw_call(draw: random.Random, middle: float, offset: float) -> SectorCall:
     """Draw a scan with a wall `offset` half angles from the middle of a sector."""
     half_angle, first = draw.uniform(0.3, 0.9), draw.choice(FIRST_BEARINGS)
-    wall = math.degrees(middle + offset * half_angle)
-    beam = round(wall - first) % 360
+    wall_bearing = math.degrees(middle + offset * half_angle)
+    beam = round(wall_bearing - first) % 360
     return SectorCall(
-        DrawnScan(360, first, 1.0, USUAL_LIMITS, REST, (Arc(beam, 1, WALL),), "laser", 0.0), wall, middle, half_angle
+        DrawnScan(360, first, 1.0, USUAL_LIMITS, OTHER_READING, (Arc(beam, 1, WALL_READING),), "laser", 0.0),
+        wall_bearing,
+        middle,
+        half_angle,
     )

@@ -28,7 +28,7 @@ class SectorTestReports:
 
 
 @pytest.fixture(scope="module")
-def examined(workspace: Workspace, seed: int) -> SectorTestReports:
+def sector_test_reports(workspace: Workspace, seed: int) -> SectorTestReports:
     """The reports of the student's tests, which run once for all checks, in a random order of the versions."""
     if not (source_of(workspace, PACKAGE) / "test" / FILE).is_file():
         raise CheckFailed(f"There is no test/{FILE} in the package {PACKAGE}.")
@@ -44,30 +44,32 @@ def examined(workspace: Workspace, seed: int) -> SectorTestReports:
 
 @check(points=2, covers="sector-tests", doc=contract.TESTING_DOC)
 @hint("Run pytest on test/test_sectors.py in a terminal, in the package's folder.")
-@hint("Import nothing of the package but robot_navigation_tutorial.sectors: the tests meet other versions of it.")
-def test_sector_tests_pass(examined: SectorTestReports) -> None:
-    """The tests of the sectors pass on a right sectors.py, and there are at least four of them."""
-    report = examined.correct
+@hint("From the package, import only robot_navigation_tutorial.sectors: the tests also run on other versions of it.")
+def test_sector_tests_pass(sector_test_reports: SectorTestReports) -> None:
+    """At least four tests of the sectors run on a correct sectors.py, and all of them pass."""
+    report = sector_test_reports.correct
     if report.failed:
         raise CheckFailed(
-            f"On a right sectors.py, {student_test_reports.shown_name(report.failed[0])} in {FILE} fails."
+            f"On a correct sectors.py, {student_test_reports.shown_name(report.failed[0])} in {FILE} fails."
         )
-    ending = "before it could say how they went" if report.status is None else f"with exit status {report.status}"
-    expect(report.passed, f"On a right sectors.py, pytest ran no test in {FILE}: it ended {ending}.")
-    message = f"Fewer than {MIN_TESTS} tests ran: that is too few to say that nearest is right."
+    ending = "before it wrote a report" if report.status is None else f"with exit status {report.status}"
+    expect(report.passed, f"On a correct sectors.py, pytest ran no test in {FILE}: it ended {ending}.")
+    message = f"Fewer than {MIN_TESTS} tests of nearest ran."
     expect(len(report.executed) >= MIN_TESTS, message, fraction=0.5)
 
 
 @check(points=4, covers="sector-tests", after=("sector_tests_pass",), doc=contract.REP_117)
-@hint("One test a line of the contract: nan, +inf, -inf, a phantom, an empty sector, left and right, angle_min.")
-@hint("Put the odd reading before a wall and after it: the order of the beams must not matter.")
-def test_sector_tests_find_faults(examined: SectorTestReports) -> None:
+@hint("Test each line of the contract: nan, +inf, -inf, a phantom, an empty sector, left and right, angle_min.")
+@hint("Put a reading that does not count before a wall and after it: the order of the beams must not matter.")
+def test_sector_tests_find_faults(sector_test_reports: SectorTestReports) -> None:
     """The tests of the sectors fail on broken versions of sectors.py."""
     missed_faults = [
-        fault.description for fault, report in examined.faulty if not report.detects_fault(examined.correct)
+        fault.description
+        for fault, report in sector_test_reports.faulty
+        if not report.detects_fault(sector_test_reports.correct)
     ]
     expect(
         not missed_faults,
-        f"Your tests are content with {'; with '.join(missed_faults)}.",
-        fraction=round(1.0 - len(missed_faults) / len(examined.faulty), 2),
+        f"Your tests do not detect: {'; '.join(missed_faults)}.",
+        fraction=round(1.0 - len(missed_faults) / len(sector_test_reports.faulty), 2),
     )

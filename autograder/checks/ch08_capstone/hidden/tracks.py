@@ -37,10 +37,10 @@ def speeds(recording: Recording) -> Floats:
 
 
 def driven_since(recording: Recording, start: float) -> Floats:
-    """Return how many metres were driven since a time: one value for each state, 0 before that time."""
-    metres = blindness.driven_distances(recording)
-    at_start = float(np.interp(start, recording.times, metres))
-    return np.where(recording.times < start, 0.0, metres - at_start)
+    """Return the distance driven since a time in m: one value for each state, 0 before that time."""
+    distances = blindness.driven_distances(recording)
+    distance_at_start = float(np.interp(start, recording.times, distances))
+    return np.where(recording.times < start, 0.0, distances - distance_at_start)
 
 
 def changes_of_direction(times: Sequence[float], rates: Sequence[float], window: float) -> list[float]:
@@ -51,15 +51,15 @@ def changes_of_direction(times: Sequence[float], rates: Sequence[float], window:
         rates: their turn rates in rad/s; left is positive.
         window: the length of the time before each command, in seconds.
     """
-    changes: list[float] = []
+    change_times: list[float] = []
     side = 0.0
     counts = []
     for now, rate in zip(times, rates, strict=True):
         if abs(rate) > MIN_TURN_RATE:
             if side * rate < 0:
-                changes.append(now)
+                change_times.append(now)
             side = math.copysign(1.0, rate)
-        counts.append(float(sum(now - change <= window for change in changes)))
+        counts.append(float(sum(now - change <= window for change in change_times)))
     return counts
 
 

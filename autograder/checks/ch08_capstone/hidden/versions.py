@@ -46,7 +46,7 @@ class Fault:
 
 FAULTS = (  # the notebook names these faults
     Fault(
-        "a nan that hides what comes after it",
+        "a nan that hides all readings after it",
         "        if math.isnan(reading):\n            continue\n",
         "        if math.isnan(reading):\n            break\n",
     ),
@@ -56,12 +56,12 @@ FAULTS = (  # the notebook names these faults
         "not reading <= scan.range_max",
     ),
     Fault(
-        "left and right exchanged",
+        "left and right swapped",
         "        away = angle - middle\n",
         "        away = angle + middle\n",
     ),
     Fault(
-        "bearings that are right only for a scan that starts at 0",
+        "bearings that are correct only for a scan that starts at 0",
         "        angle = scan.angle_min + index * scan.angle_increment\n",
         "        angle = index * scan.angle_increment\n",
     ),
@@ -80,7 +80,7 @@ def faulty_versions(faults: Sequence[Fault], draw: random.Random) -> list[versio
 
 def _apply(fault: Fault) -> str:
     if CORRECT.count(fault.find) != 1:
-        raise GraderError(f"the fault {fault.description!r} no longer fits the right version")
+        raise GraderError(f"the fault {fault.description!r} no longer fits the correct version")
     return CORRECT.replace(fault.find, fault.replace)
 
 

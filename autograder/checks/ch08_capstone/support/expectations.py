@@ -11,10 +11,12 @@ from autograder.checks.ch08_capstone.support.contract import TOLERANCE
 
 def expect_still(commands: Sequence[ReceivedMessage], situation: str, *, fraction: float = 0.0) -> None:
     """Fail the check unless every command is zero."""
-    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should be told to stand still.")
-    wrong = next((c for c in commands if not _is_still(c)), None)
-    action = "" if wrong is None else describe_command(wrong.message)
-    expect(wrong is None, f"{situation}, the robot {action}: it should stand still.", fraction=fraction)
+    expect(
+        bool(commands), f"{situation}, no command was published on cmd_vel: the robot should be told to stand still."
+    )
+    wrong_command = next((c for c in commands if not _is_still(c)), None)
+    action = "" if wrong_command is None else describe_command(wrong_command.message)
+    expect(wrong_command is None, f"{situation}, the robot {action}: it should stand still.", fraction=fraction)
 
 
 def expect_driving(
@@ -27,16 +29,16 @@ def expect_driving(
 ) -> None:
     """Fail the check unless the commands drive forward, no faster than `max_speed` m/s.
 
-    A robot that stands still from time to time fails only the checks that ask for driving `always`.
+    A robot that sometimes stands still fails only the checks that set `always`.
     """
-    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should drive.")
-    wrong = next(
+    expect(bool(commands), f"{situation}, no command was published on cmd_vel: the robot should drive.")
+    wrong_command = next(
         (c for c in _commands_to_test(commands, always) if not 0.0 < c.message.linear.x <= max_speed + TOLERANCE), None
     )
-    action = "" if wrong is None else describe_command(wrong.message)
+    action = "" if wrong_command is None else describe_command(wrong_command.message)
     expect(
-        wrong is None,
-        f"{situation}, the robot {action}: it should drive forward, at most at {max_speed:.2f} m/s.",
+        wrong_command is None,
+        f"{situation}, the robot {action}: it should drive forward, at {max_speed:.2f} m/s at most.",
         fraction=fraction,
     )
 
@@ -46,11 +48,11 @@ def expect_turning(
 ) -> None:
     """Fail the check unless the commands turn on the spot to a side, no faster than `max_speed` rad/s.
 
-    As in `expect_driving`, commands to stand still are ignored if others turn.
+    As in `expect_driving`, commands to stand still are ignored if other commands turn.
     """
-    expect(bool(commands), f"{situation}, no command came on cmd_vel: the robot should turn.")
+    expect(bool(commands), f"{situation}, no command was published on cmd_vel: the robot should turn.")
     sign = 1.0 if side == "left" else -1.0
-    wrong = next(
+    wrong_command = next(
         (
             c
             for c in _commands_to_test(commands)
@@ -58,10 +60,10 @@ def expect_turning(
         ),
         None,
     )
-    action = "" if wrong is None else describe_command(wrong.message)
+    action = "" if wrong_command is None else describe_command(wrong_command.message)
     expect(
-        wrong is None,
-        f"{situation}, the robot {action}: it should turn {side} on the spot, at most at {max_speed:.2f} rad/s.",
+        wrong_command is None,
+        f"{situation}, the robot {action}: it should turn {side} on the spot, at {max_speed:.2f} rad/s at most.",
         fraction=fraction,
     )
 

@@ -52,22 +52,24 @@ def message_types(package: Any) -> MessageTypes:
     """Return the two messages of a package. Other checks test whether they are exactly as the contract requires.
 
     Raises:
-        CheckFailed: a message is missing, or lacks a field that the grader needs to talk to the nodes.
+        CheckFailed: a message is missing, or lacks a field that the grader needs to communicate with the nodes.
     """
     for expected in (CLEARANCE, HEALTH):
         message = getattr(package.msg, expected.name, None)
         fields = message.get_fields_and_field_types() if message is not None else {}
-        absent = [
+        missing_fields = [
             name for name, kind in expected.fields.items() if fields.get(name) not in _ACCEPTED_TYPES.get(kind, (kind,))
         ]
         expect(
-            not absent, f"{expected.name}.msg has no {', '.join(absent)} as step 3 says: nobody understands the nodes."
+            not missing_fields,
+            f"{expected.name}.msg does not define {', '.join(missing_fields)} as in step 3, "
+            "so no other node can use this message.",
         )
     return MessageTypes(package.msg.Clearance, package.msg.Health)
 
 
 def differences(workspace: Workspace, expected: ExpectedMessage) -> list[str]:
-    """Describe how the student's definition of a message differs from the contract; near misses are named.
+    """Describe how the student's definition of a message differs from the contract, and name near misses.
 
     Raises the errors of `load_interfaces`.
     """
@@ -75,22 +77,24 @@ def differences(workspace: Workspace, expected: ExpectedMessage) -> list[str]:
     message = getattr(package.msg, expected.name, None)
     if message is None:
         available = sorted(name for name in vars(package.msg) if name[:1].isupper())
-        return [f"There is no msg/{expected.name}.msg; there is {', '.join(available) or 'no message'}."]
+        return [f"There is no msg/{expected.name}.msg. Existing messages: {', '.join(available) or 'none'}."]
     fields = message.get_fields_and_field_types()
     errors = [_field_error(expected.name, name, kind, fields) for name, kind in expected.fields.items()]
-    extra = [name for name in fields if name not in expected.fields and not _is_near_miss(name, expected, fields)]
-    errors += [f"{expected.name} has a field {name} that is not asked for." for name in extra]
+    extra_fields = [
+        name for name in fields if name not in expected.fields and not _is_near_miss(name, expected, fields)
+    ]
+    errors += [f"{expected.name} has a field {name} that is not in the contract." for name in extra_fields]
     errors = [error for error in errors if error]
     if not errors and list(fields) != list(expected.fields):
         errors = [
-            f"The fields of {expected.name} are in the order {', '.join(fields)}: "
-            f"{', '.join(expected.fields)} is asked."
+            f"The fields of {expected.name} are in the order {', '.join(fields)}, "
+            f"instead of {', '.join(expected.fields)}."
         ]
     return errors + _differences_in_text(workspace, expected)
 
 
 def _differences_in_text(workspace: Workspace, expected: ExpectedMessage) -> list[str]:
-    """Describe wrong constants, and fields with a default, which the loaded classes do not contain."""
+    """Describe wrong constants and default values. The loaded classes contain neither."""
     path = f"msg/{expected.name}.msg"
     data = files.read_plain(source_of(workspace, INTERFACES) / path, interfaces.MAX_BYTES + 1) or b""
     try:
@@ -103,7 +107,7 @@ def _differences_in_text(workspace: Workspace, expected: ExpectedMessage) -> lis
         for name, value in expected.constants.items()
         if constants.get(name) != ("uint8", value)
     ] + [
-        f"{expected.name}.{field.name} has a default, {field.default!r}: no field has one."
+        f"{expected.name}.{field.name} has the default {field.default!r}, but no field may have a default."
         for field in definition.fields
         if field.default is not None
     ]
@@ -114,7 +118,7 @@ def _field_error(message: str, name: str, kind: str, fields: Mapping[str, str]) 
         similar = nearest(name, fields)
         return f"{message} has no field {name}{f'; it has {similar}' if similar else ''}."
     if fields[name] != kind:
-        return f"{message}.{name} is {_msg_type(fields[name])}, the contract asks {_msg_type(kind)}."
+        return f"{message}.{name} has the type {_msg_type(fields[name])}, instead of {_msg_type(kind)}."
     return ""
 
 

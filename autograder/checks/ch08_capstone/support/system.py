@@ -1,4 +1,4 @@
-"""The student's three programs, to which checks publish scans, and the messages that they publish."""
+"""Runs the student's three programs, publishes scans to them, and collects the messages that they publish."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from autograder.checks.ch08_capstone.support.clearances import expected_clearanc
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PACKAGE, PROCESSOR, PROGRAMS, name_of
 from autograder.checks.ch08_capstone.support.messages import MessageTypes, load_messages, message_types
 
-SETTLED = 0.35  # s: by then, a scan has passed through both nodes, and a command at 10 Hz has followed
+SETTLING_SECONDS = 0.35  # s in which a scan passes through both nodes and a command at 10 Hz follows
 ANSWER_SECONDS = 5.0  # s of ROS time for the response of a service
 NO_SCAN_SECONDS = 1.6  # s at the start without a scan, enough for three reports
 
 
 @dataclass(frozen=True)
 class SystemMessages:
-    """The messages that the system published in an interval, in the order in which they came."""
+    """The messages that the system published in an interval, in the order of their arrival."""
 
     clearances: tuple[ReceivedMessage, ...]
     commands: tuple[ReceivedMessage, ...]
@@ -48,9 +48,9 @@ class System:
     Args:
         workspace: the workspace in which they are installed.
         types: the types of the student's messages.
-        needed: programs that have to run; the others may be missing, or fail.
-        clock_rate: seconds on the clocks of the programs' machine in a second of ROS time; always 1 in real time.
-        absent: programs that are not started; checks can send the messages that these would publish.
+        needed_programs: programs that have to run; the others may be missing, or fail.
+        clock_rate: how many seconds the machine's clocks advance in a second of ROS time; always 1 in real time.
+        absent_programs: programs that are not started; checks can send the messages that these would publish.
         sends_clearances: whether the expected clearance of each scan is sent if sensor_processor is absent.
 
     Attributes:
@@ -63,23 +63,27 @@ class System:
         self,
         workspace: Workspace,
         types: MessageTypes,
-        needed: Collection[str] = PROGRAMS,
+        needed_programs: Collection[str] = PROGRAMS,
         clock_rate: float = 1.0,
-        absent: Collection[str] = (),
+        absent_programs: Collection[str] = (),
         *,
         sends_clearances: bool = False,
     ) -> None:
-        self.types, self._sends_clearances = types, sends_clearances and PROCESSOR in absent
+        self.types, self._sends_clearances = types, sends_clearances and PROCESSOR in absent_programs
         outputs = {PROCESSOR: ("/clearance", types.clearance), CONTROLLER: ("/cmd_vel", Twist)}
-        started_names = [n for n in PROGRAMS if n not in absent and (n in needed or _is_installed(workspace, n))]
+        started_programs = [
+            name
+            for name in PROGRAMS
+            if name not in absent_programs and (name in needed_programs or _is_installed(workspace, name))
+        ]
         self.harness = AutoHarness(
             workspace,
-            programs=tuple(Program(PACKAGE, name) for name in started_names),
-            publishes={"/scan": LaserScan, **dict(outputs[name] for name in outputs if name in absent)},
+            programs=tuple(Program(PACKAGE, name) for name in started_programs),
+            publishes={"/scan": LaserScan, **dict(outputs[name] for name in outputs if name in absent_programs)},
             subscribes={"/clearance": types.clearance, "/cmd_vel": Twist, "/health": types.health},
             clock_rate=clock_rate,
         )
-        self.require(needed)
+        self.require(needed_programs)
 
     def __enter__(self) -> System:
         self.harness.__enter__()
@@ -93,9 +97,9 @@ class System:
     def __exit__(self, *exc_info: object) -> None:
         self.harness.__exit__(None, None, None)
 
-    def require(self, needed: Collection[str]) -> None:
+    def require(self, needed_programs: Collection[str]) -> None:
         """Set the programs that have to run from now on; the others may fail."""
-        self.harness.optional = frozenset(PROGRAMS) - frozenset(needed)
+        self.harness.optional = frozenset(PROGRAMS) - frozenset(needed_programs)
 
     def runs(self, programs: Collection[str]) -> bool:
         """Return whether all these programs are running."""
@@ -129,27 +133,29 @@ class System:
     @contextmanager
     def changed_parameter(self, program: str, name: str, value: float) -> Iterator[parameters.SetParametersReply]:
         """Change a parameter within a `with` block; yield the program's reply."""
-        node = self.parameters_of(program)
-        before = node.values(name)
-        reply = node.change({name: value}) if before else parameters.SetParametersReply(accepted=False)
+        node_parameters = self.parameters_of(program)
+        original_values = node_parameters.values(name)
+        reply = (
+            node_parameters.change({name: value}) if original_values else parameters.SetParametersReply(accepted=False)
+        )
         try:
             yield reply
         finally:
             if reply.accepted:
-                node.change(before)  # another check tests whether the value is the contract's default
+                node_parameters.change(original_values)  # another check tests whether this is the contract's default
 
     def publish_scans(self, scan: LaserScan, seconds: float = 0.7, *, age: float = 0.0) -> SystemMessages:
-        """Publish a scan ten times a second; return the messages since the programs had time to react.
+        """Publish a scan ten times a second; return the messages after the programs' reaction time.
 
         Args:
             scan: the scan; each copy gets its own stamp.
-            seconds: for how long.
-            age: how old the scans' stamps are when they arrive, in seconds.
+            seconds: how long the scan is published.
+            age: the age of the stamps when the scans arrive, in seconds.
         """
         start = self.seconds
         for _ in range(round(seconds / SCAN_SECONDS)):
             self.publish_scan(scan, age)
-        return self.messages(start + SETTLED)
+        return self.messages(start + SETTLING_SECONDS)
 
     def publish_scan(self, scan: LaserScan, age: float = 0.0) -> None:
         """Publish one scan and let 0.1 s pass."""
@@ -167,7 +173,7 @@ class System:
         self.harness.publish(topic, message)
 
     def wait(self, seconds: float) -> SystemMessages:
-        """Publish nothing for a while; return the messages that come meanwhile."""
+        """Publish nothing for a while; return the messages that the programs publish meanwhile."""
         start = self.seconds
         self.harness.run(seconds)
         return self.messages(start)
@@ -179,35 +185,35 @@ class System:
 
 
 class SharedSystem:
-    """Keeps one system for several checks, and restarts it once one of its programs has ended.
+    """Keeps one system for several checks, and restarts it when one of its programs has ended.
 
     Args:
         workspace: the workspace in which the programs are installed.
-        clock_rate, absent, sends_clearances: see `System`.
+        clock_rate, absent_programs, sends_clearances: see `System`.
     """
 
     def __init__(
         self,
         workspace: Workspace,
         clock_rate: float = 1.0,
-        absent: Collection[str] = (),
+        absent_programs: Collection[str] = (),
         *,
         sends_clearances: bool = False,
     ) -> None:
-        self._workspace, self._clock_rate, self._absent, self._sends_clearances = (
+        self._workspace, self._clock_rate, self._absent_programs, self._sends_clearances = (
             workspace,
             clock_rate,
-            absent,
+            absent_programs,
             sends_clearances,
         )
-        self._needed: tuple[str, ...] = ()
-        self._shared = Shared(self._start_system, lambda system: system.runs(self._needed))
+        self._needed_programs: tuple[str, ...] = ()
+        self._shared = Shared(self._start_system, lambda system: system.runs(self._needed_programs))
 
-    def get(self, *needed: str) -> System:
+    def get(self, *needed_programs: str) -> System:
         """Return a system in which these programs run; the others may fail."""
-        self._needed = needed
+        self._needed_programs = needed_programs
         system = self._shared.get()
-        system.require(needed)
+        system.require(needed_programs)
         return system
 
     def close(self) -> None:
@@ -219,9 +225,9 @@ class SharedSystem:
         return System(
             self._workspace,
             types,
-            self._needed,
+            self._needed_programs,
             self._clock_rate,
-            self._absent,
+            self._absent_programs,
             sends_clearances=self._sends_clearances,
         )
 

@@ -1,4 +1,4 @@
-"""The visible checks of 08_capstone, one or two for each step."""
+"""The visible checks of 08_capstone, one or more for each step."""
 
 PACKAGES = ("robot_navigation_interfaces", "robot_navigation_tutorial")
 MODULES = ("files", "behaviour", "system")

@@ -13,20 +13,21 @@ from autograder.checks.ch08_capstone.support.sources import require_built, sourc
 
 
 @check(points=1, covers=("installs", "imports"), group="step_1", doc=contract.PACKAGES_DOC)
-@hint("The tags stand in this order: name, version, description, maintainer, license, dependencies, export.")
+@hint("The tags have to be in this order: name, version, description, maintainer, license, dependencies, export.")
 @hint("setup(name=..., version=..., packages=find_packages(exclude=['test']), entry_points={...}, ...)")
 def test_package(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
-    """Step 1: robot_navigation_tutorial builds, installs three executables, and declares what it imports."""
+    """Step 1: robot_navigation_tutorial builds, installs three executables, and declares its imports."""
     package_xml = manifest.read(source_of(workspace, PACKAGE))
     require_built(builds, PACKAGE)
     executables = installed.inspect_package(workspace.install, PACKAGE).executables
-    absent = [name for name in PROGRAMS if name not in executables]
+    missing_programs = [name for name in PROGRAMS if name not in executables]
     expect(
-        not absent,
-        f"The executable {', '.join(absent)} is not installed; installed are: {', '.join(executables) or 'none'}.",
+        not missing_programs,
+        f"The build did not install the executable {' or '.join(missing_programs)}. "
+        f"Installed executables: {', '.join(executables) or 'none'}.",
     )
     missing = imports.missing(source_of(workspace, PACKAGE), package_xml)
-    expect(not missing["exec"], f"{imports.describe(missing['exec'])}: package.xml does not declare it.")
+    expect(not missing["exec"], f"{imports.describe(missing['exec'])}: not declared in package.xml.")
 
 
 @check(points=1, covers="definitions", group="step_3", doc=contract.INTERFACES_DOC)
@@ -39,10 +40,13 @@ def test_definitions(workspace: Workspace) -> None:
 
 @check(points=1, covers="interfaces-manifest", group="step_3", doc=contract.INTERFACES_DOC)
 @hint('rosidl_generate_interfaces(${PROJECT_NAME} "msg/Clearance.msg" "msg/Health.msg" DEPENDENCIES std_msgs)')
-@hint("find_package for ament_cmake, rosidl_default_generators and std_msgs before, ament_package() at the end.")
+@hint("Start with find_package for ament_cmake, rosidl_default_generators and std_msgs; end with ament_package().")
 def test_interfaces_build(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Step 3: colcon builds the package of the messages."""
     require_built(builds, INTERFACES)
-    shared = installed.inspect_package(workspace.install, INTERFACES).shared
-    absent = [name for name in ("Clearance", "Health") if f"msg/{name}.msg" not in shared]
-    expect(not absent, f"The build made no code for {' and '.join(absent)}: CMakeLists.txt does not list it.")
+    shared_files = installed.inspect_package(workspace.install, INTERFACES).shared
+    missing_names = [name for name in ("Clearance", "Health") if f"msg/{name}.msg" not in shared_files]
+    expect(
+        not missing_names,
+        f"The build generated no code for {' or '.join(missing_names)}: does CMakeLists.txt list both messages?",
+    )

@@ -46,7 +46,7 @@ Reports = Mapping[tuple[str, ...], student_test_reports.Report]
 
 @pytest.fixture(scope="module", autouse=True)
 def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
-    """The future reports of the tests and the linters, which run while the check of the launch file waits."""
+    """A future for the reports of the tests and linters, which run while the check of the launch file waits."""
 
     def run_tests() -> Reports:
         test_runs = {
@@ -68,11 +68,11 @@ def reports(workspace: Workspace) -> Iterator[Future[Reports]]:
 
 @check(points=1, covers=("launches", "launch-arguments"), group="step_4", needs=("starts",), doc=contract.LAUNCH_DOC)
 @hint("Node(package='robot_navigation_tutorial', executable=name, name=name, output='screen', parameters=[...])")
-@hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and params_file likewise.")
+@hint("DeclareLaunchArgument('use_sim_time', default_value='false', description='...'), and the same for params_file.")
 def test_launch(workspace: Workspace) -> None:
     """Step 4: navigation.launch.py starts the three nodes, use_sim_time reaches them, and Ctrl-C ends them."""
     file = workspace.install / PACKAGE / "share" / PACKAGE / "launch" / LAUNCH_FILE
-    expect(file.is_file(), f"launch/{LAUNCH_FILE} is not installed: write it, and look at data_files in setup.py.")
+    expect(file.is_file(), f"launch/{LAUNCH_FILE} is not installed: write it, and check data_files in setup.py.")
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"use_sim_time": "true"}) as harness:
         launch_probe.expect_nodes(harness, [name_of(name) for name in PROGRAMS])
         for name in PROGRAMS:
@@ -81,21 +81,21 @@ def test_launch(workspace: Workspace) -> None:
 
 
 @check(points=1, covers="config", group="step_5", needs=("package",), doc=contract.PARAMETERS_DOC)
-@hint("A node's name, then ros__parameters, then name and value, each level indented by two blanks.")
+@hint("Write a node's name, then ros__parameters, then names and values. Indent each level by two spaces.")
 def test_config_file(workspace: Workspace) -> None:
-    """Step 5: the installed configuration holds every parameter of every node, with its default."""
+    """Step 5: the installed configuration file holds every parameter of every node, with its default."""
     config = parameters.read_file(workspace.install / PACKAGE / "share" / PACKAGE / CONFIG)
     for node, bounds_by_name in PARAMETERS.items():
         values = parameters.for_node(config, node)
-        absent = [name for name in bounds_by_name if name not in values]
-        expect(not absent, f"{CONFIG} has no {', '.join(absent)} for {node}.")
+        missing_names = [name for name in bounds_by_name if name not in values]
+        expect(not missing_names, f"{CONFIG} has no {' and no '.join(missing_names)} for {node}.")
         differences = parameters.differences(values, {name: bounds.default for name, bounds in bounds_by_name.items()})
         expect(not differences, f"{CONFIG}: {'; '.join(differences)}.")
 
 
 @check(points=1, covers="sector-tests", group="step_6", needs=("package",), doc=contract.TESTING_DOC)
 @hint("The cell below test_sectors.py runs it: read its last lines.")
-@hint("Import nothing of the package but robot_navigation_tutorial.sectors.")
+@hint("From the package, import only robot_navigation_tutorial.sectors.")
 def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     """Step 6: at least four tests in test_sectors.py run on your sectors.py, and pass."""
     expect(not _missing_files(workspace, TESTS), f"There is no test/{TESTS[0]}.")
@@ -107,39 +107,43 @@ def test_sector_tests(workspace: Workspace, reports: Future[Reports]) -> None:
     report = reports.result()[TESTS]
     messages = report.claims.messages
     failures = "; ".join(f"{name}: {messages.get(name, '')}" for name in report.failed[:3])
-    expect(not report.failed, f"{len(report.failed)} tests fail: {failures}")
-    expect(len(report.executed) >= 4, f"{len(report.executed)} tests ran. {report.output.strip()[-300:]}")
+    expect(not report.failed, f"Failed tests ({len(report.failed)}): {failures}")
+    message = f"{len(report.executed)} tests ran, instead of at least 4. {report.output.strip()[-300:]}"
+    expect(len(report.executed) >= 4, message)
 
 
 @check(points=1, covers="sector-tests", group="step_6", needs=("sector_tests",), doc=contract.TESTING_DOC)
-@hint("Put something near on the left, and ask for the front.", "Change nearest yourself: which test fails?")
+@hint("Put something near on the left, and test the front sector.", "Change nearest yourself: which test fails?")
 def test_sector_tests_notice(reports: Future[Reports]) -> None:
-    """Step 6: one of them fails on a sectors.py that looks all around instead of into the sector."""
+    """Step 6: at least one of the tests fails on a sectors.py in which nearest ignores the sector."""
     results = reports.result()
-    expect(results[ON_MUTANT].detects_fault(results[TESTS]), "All of them pass on that mutant, too.")
+    expect(
+        results[ON_MUTANT].detects_fault(results[TESTS]),
+        "All of your tests also pass on a sectors.py in which nearest ignores the sector.",
+    )
 
 
 @check(points=1, covers=("linters", "pytest"), group="step_7", needs=("package",), doc=contract.TESTING_DOC)
 @hint("The linters name a file, a line and a rule; `colcon test-result --all --verbose` shows all of them.")
-@hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no test and ends with status 0.")
+@hint("Without extras_require={'test': ['pytest']} in setup.py, colcon runs no tests and exits with status 0.")
 def test_quality(workspace: Workspace, reports: Future[Reports]) -> None:
-    """Step 7: colcon will run your tests, and flake8 and pep257 report no errors."""
+    """Step 7: colcon test will run your tests, and flake8 and pep257 report no errors."""
     runs_pytest = colcon_test.runs_pytest(workspace, installed.inspect_package(workspace.install, PACKAGE))
-    expect(runs_pytest, "setup.py does not name pytest, so that `colcon test` runs no test.")
-    absent = _missing_files(workspace, LINTERS)
-    expect(not absent, f"There is no test/{' and no test/'.join(absent)}.")
+    expect(runs_pytest, "setup.py does not name pytest, so `colcon test` runs no tests.")
+    missing_files = _missing_files(workspace, LINTERS)
+    expect(not missing_files, f"There is no test/{' and no test/'.join(missing_files)}.")
     report = reports.result()[LINTERS]
     messages = "; ".join(report.claims.messages.get(name, name) for name in report.failed)
-    expect(report.passed, f"The linters object: {messages or report.output.strip()[-300:]}")
+    expect(report.passed, f"The linters report errors: {messages or report.output.strip()[-300:]}")
     executed_files = {f"{test.partition('::')[0]}.py" for test in report.executed}
     expect(
         executed_files >= set(LINTERS),
-        f"{' and '.join(sorted({*LINTERS} - executed_files))}: each test in it was skipped.",
+        f"All tests in {' and in '.join(sorted({*LINTERS} - executed_files))} were skipped.",
     )
-    objections = linters.lint(workspace, student_test_runs.read_source(workspace, PACKAGE))
+    findings = linters.lint(workspace, student_test_runs.read_source(workspace, PACKAGE))
     expect(
-        not objections,
-        "; ".join(f"{name} passes, and its linter finds {objection}" for name, objection in objections.items()),
+        not findings,
+        "; ".join(f"{name} passes, but its linter reports: {finding}" for name, finding in findings.items()),
     )
 
 
