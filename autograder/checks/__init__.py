@@ -4,20 +4,20 @@ The package of a chapter::
 
     chNN_name/
         conftest.py    the fixtures of this chapter
-        support/       contract, robots and stimuli for visible and hidden checks
+        support/       the contract, harnesses and inputs that visible and hidden checks share
         visible/       the checks that students run themselves
-        hidden/        the checks that grade; students never get this folder
+        hidden/        the checks that decide the points; students never get this folder
         mutants.yaml   flawed versions of the reference, each with the check for which it was written
-        variants/      right answers in another style
+        variants/      correct answers in another style
         attacks.py     optional: submissions that try to get points that they have not earned
 
-All of them import nothing of the autograder except `autograder.checking` and modules of their own or another chapter.
+From the autograder, they import only `autograder.checking` and modules of their own chapter or another one.
 Visible checks and support import nothing hidden, and no conftest imports another. Releases and sandboxes contain no
 `hidden` folder. Every chapter has the fixtures of `autograder.grade.plugin`.
 """
 
 from autograder import course_paths
 
-# The chapters of another course's folder are imported under the same names, as autograder.checks.chID.
+# Chapters in another course's folder are imported under the same names, as autograder.checks.chID.
 if str(course_paths.CHECKS) not in __path__:
     __path__.insert(0, str(course_paths.CHECKS))

@@ -9,7 +9,7 @@ CHAPTER = Chapter("06_testing")
 TESTS, MODULE = "speed_guard/test", "speed_guard/speed_guard/limits.py"
 FUNCTION_CHECKS = frozenset({"stop", "slow", "clear", "infinity", "unknown", "back", "chosen", "refused"})
 
-# Compares the program with the released one, ignoring names. A similar but not equal program is reported as faulty.
+# Compares the program with the released one, ignoring names. If it is similar but not equal, it is reported as faulty.
 READ_SOURCE = """
 import ast
 from difflib import SequenceMatcher
@@ -120,31 +120,31 @@ def attacks() -> tuple[Attack, ...]:
     return (
         Attack(
             "source readers",
-            "tests that compare the text of the version before them with the released one",
+            "tests that compare the text of the version under test with the released one",
             CHAPTER.write(files={limits: READ_SOURCE.format(released=function)}),
             FUNCTION_CHECKS,
-            says="on a right speed_guard that is written differently",
+            says="on a correct speed_guard that is written differently",
         ),
         Attack(
             "telltale tests",
             "tests that put the text of a version into ids, names, exceptions, warnings, files and output",
             CHAPTER.write(files={limits: TELL_ALL + COMPARE.format(released=function) + TELL_OTHERS}),
             FUNCTION_CHECKS | {"limits_right"},
-            says="in test_limits.py fails on a right speed_guard that is written differently",
+            says="in test_limits.py fails on a correct speed_guard that is written differently",
         ),
         Attack(
             "lookers-on",
             "tests that count runs in files, and read file times, arguments, environment, paths and processes",
             CHAPTER.write(files={limits: LOOK_AROUND}),
             FUNCTION_CHECKS,
-            says="faulty versions that break this line of the contract pass all tests in test_limits.py",
+            says="faulty versions pass all tests in test_limits.py, although they break this line of the contract",
         ),
         Attack(
             "argument readers",
             "tests that read how pytest was called",
             CHAPTER.write(files={limits: READ_ARGUMENTS}),
             FUNCTION_CHECKS | {"limits_right"},
-            says="on a right speed_guard that is written differently",
+            says="on a correct speed_guard that is written differently",
         ),
         Attack(
             "test thief",
@@ -154,7 +154,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "report without tests",
-            "names no pytest, and setup.py writes the report",
+            "a setup.py that does not name pytest and writes the report itself",
             CHAPTER.write("pytest_unnamed", heads={"speed_guard/setup.py": FORGE_REPORT}),
             CHAPTER.mutant("pytest_unnamed").fails,
             exactly=True,
@@ -162,7 +162,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "changed package",
-            "a given module that is changed, and tests that pass on it alone",
+            "a given module that is changed, and tests that pass only on the changed one",
             CHAPTER.write(
                 swaps={MODULE: ("def safe_speed(", "MARK = 1\n\n\ndef safe_speed(")},
                 files={limits: ASK_FOR_MARK},

@@ -8,7 +8,7 @@ CHAPTER = Chapter("07_best_practices")
 HOME = "my_robot_package/my_robot_package"
 UTILS = f"{HOME}/utils/data_processing.py"
 NODE, ROBUST = (f"{HOME}/nodes/{name}.py" for name in ("sensor_processor", "robust_node"))
-# Answers in place of the program that calls the functions, if that program imports the module.
+# Answers instead of the program that calls the functions, if that program imports the module.
 FORGE_ANSWERS = """
 import json as _json, os as _os, sys as _sys
 _frame = _sys._getframe()
@@ -49,7 +49,7 @@ def attacks() -> tuple[Attack, ...]:
     return (
         Attack(
             "forged answers",
-            "a module that answers in the place of the program that calls its functions",
+            "a module that answers instead of the program that calls its functions",
             CHAPTER.write("never_fatal", heads={UTILS: STEAL_SECRETS + FORGE_ANSWERS}),
             utils_checks | CHAPTER.mutant("never_fatal").fails,
         ),

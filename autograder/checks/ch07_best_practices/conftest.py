@@ -27,12 +27,12 @@ def fresh_processor(workspace: Workspace) -> Iterator[Processor]:
 
 
 @pytest.fixture(scope="module")
-def dead(workspace: Workspace, seed: int) -> SensorRun:
+def dead_run(workspace: Workspace, seed: int) -> SensorRun:
     """A run of a robust node whose readings all fail; several checks share it."""
     return dead_sensor(workspace, random.Random(f"{seed}:dead"))
 
 
 @pytest.fixture(scope="module")
-def flaky(workspace: Workspace, seed: int) -> SensorRun:
+def flaky_run(workspace: Workspace, seed: int) -> SensorRun:
     """A run of a robust node whose readings fail in many series; several checks share it."""
     return flaky_sensor(workspace, random.Random(f"{seed}:flaky"))

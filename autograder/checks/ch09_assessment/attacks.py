@@ -23,7 +23,7 @@ def attacks() -> tuple[Attack, ...]:
         ),
         Attack(
             "echo",
-            "a guard that publishes what it said before, whatever it hears; it steals, too",
+            "a guard that repeats its last decision, whatever it receives, and steals secrets",
             CHAPTER.write(
                 heads={GUARD: STEAL_SECRETS + FORGE_PASSES},
                 swaps={GUARD: ("            self.cooling = True\n", "            self.cooling = False\n")},

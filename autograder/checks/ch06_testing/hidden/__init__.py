@@ -1,4 +1,4 @@
-"""The hidden suite of 06_testing: a student's tests pass on right versions of a package, and fail on faulty ones."""
+"""The hidden suite of 06_testing: students' tests have to pass on correct versions and fail on faulty ones."""
 
 PACKAGES = ("speed_guard",)
 MODULES = ("function", "node", "launch", "quality")

@@ -1,9 +1,9 @@
-"""All runs of a student's tests: first on a right version, then on right and faulty versions in a drawn order.
+"""All runs of a student's tests: first on a correct version, then on correct and faulty versions in a drawn order.
 
-Right and faulty versions are mixed and run in the same way, so that a test cannot tell them apart by the time or the
-circumstances of its run. A test that fails on the first right version does not run again. If other tests fail on
-another right version, all runs are repeated without these tests, on newly created versions. Only if the remaining tests
-pass on all right versions does their failure on a faulty version count.
+Correct and faulty versions are mixed and run in the same way, so a test cannot tell them apart by the time or the
+circumstances of its run. A test that fails on the first correct version does not run again. If other tests fail on
+another correct version, all runs are repeated without these tests, on newly created versions. The failure of the
+remaining tests on a faulty version counts only if they pass on all correct versions.
 """
 
 from __future__ import annotations
@@ -16,7 +16,15 @@ from functools import cached_property
 
 from autograder.checking import CheckFailed, CheckRow, Workspace, expect
 from autograder.checking.probes import colcon_test, student_test_reports, student_test_runs
-from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, bare, broken, faults, reworded, right
+from autograder.checks.ch06_testing.hidden.faults import (
+    STYLES,
+    Fault,
+    correct_version,
+    faults,
+    faulty_version,
+    minimal_version,
+    reworded_version,
+)
 from autograder.checks.ch06_testing.support.assertions import describe_failure, is_usable
 from autograder.checks.ch06_testing.support.contract import (
     GIVEN_TESTS,
@@ -41,7 +49,7 @@ FILES = {
 }
 COLCON, ENDS = frozenset(("colcon", "linters")), "ends"
 ALL_FILES = COLCON | {"as_given", ENDS}  # checks that need the tests of all three files
-RIGHT_VERSIONS = SECOND, REWORDED, BARE, BACKWARDS = "second", "reworded", "bare", "backwards"
+CORRECT_VERSIONS = SECOND, REWORDED, BARE, BACKWARDS = "second", "reworded", "bare", "backwards"
 BRIEF_FAULTS = frozenset({"believes_distances_too_long"})  # short-lived faults, which a slow run may miss
 ORDER_INDEPENDENT = (LIMITS, GUARD)  # files whose tests also have to pass in the opposite order
 
@@ -80,11 +88,11 @@ class Examination:
 
     @cached_property
     def trial(self) -> dict[str, student_test_reports.Report]:
-        """The reports of each file's tests on a right version. Network traffic of the node's tests is sniffed."""
+        """The reports of each file's tests on a correct version. Network traffic of the node's tests is captured."""
         needed_files = {FILES[check] for check in self._checks if check in FILES}
         runs = {
             name: student_test_reports.TestRun(
-                (name,), right(STYLES[0], self._draw(name)), sniffed=name == GUARD, is_public=True
+                (name,), correct_version(STYLES[0], self._draw(name)), sniffed=name == GUARD, is_public=True
             )
             for name in MIN_TESTS
             if (name in needed_files or self._checks & ALL_FILES) and name in self.source.tests
@@ -111,8 +119,8 @@ class Examination:
         """The report of `colcon test` on the student's own package."""
         return colcon_test.colcon_test(self._workspace, PACKAGE)
 
-    def expect_right(self, name: str, *purposes: str) -> None:
-        """Fail the check unless a file's tests pass on other right versions, and in the runs with these purposes."""
+    def expect_passed_on_correct_versions(self, name: str, *purposes: str) -> None:
+        """Fail the check unless a file's tests pass on other correct versions, and in the runs with these purposes."""
         self.expect_usable(name)
         for purpose in (SECOND, REWORDED, *([BARE] if name == LIMITS else []), *purposes):
             if not self.runs[name, purpose].passed:
@@ -120,15 +128,15 @@ class Examination:
 
     def expect_usable(self, name: str) -> None:
         """Fail the check unless at least one of the student's tests in a file passes on the package as it is."""
-        message = f"No test of yours in {name} passes on the package as it is."
+        message = f"None of your tests in {name} passes on the package as it is."
         expect(is_usable(name, self.trial.get(name)), message)
 
     def expect_any_usable(self) -> None:
         """Fail the check unless at least one of the student's tests in all files passes on the package as it is."""
         is_any_usable = any(is_usable(name, report) for name, report in self.trial.items())
-        expect(is_any_usable, "No test of yours passes on the package as it is, in any of the three files.")
+        expect(is_any_usable, "None of your tests in the three files passes on the package as it is.")
 
-    def expect_objection(self, check: str, promise: str) -> None:
+    def expect_detection(self, check: str, promise: str) -> None:
         """Fail the check unless the tests in the check's file fail on every fault that belongs to the check.
 
         A run that has to be stopped counts as failed. Another check tests that runs end by themselves.
@@ -139,8 +147,8 @@ class Examination:
         detected_faults = [fault for fault in relevant_faults if self._detects(name, fault)]
         expect(
             len(detected_faults) == len(relevant_faults),
-            f"{len(relevant_faults) - len(detected_faults)} of {len(relevant_faults)} faulty versions that break this "
-            f"line of the contract pass all tests in {name}: {promise}",
+            f"{len(relevant_faults) - len(detected_faults)} of {len(relevant_faults)} faulty versions pass all tests "
+            f"in {name}, although they break this line of the contract: {promise}",
             fraction=len(detected_faults) / len(relevant_faults)
             if len(detected_faults) < len(relevant_faults)
             else 0.0,
@@ -160,31 +168,29 @@ class Examination:
         )
 
     def _valid_reports(self, name: str) -> dict[str, student_test_reports.Report]:
-        """Return a file's reports by purpose: of all its tests, or only of those that pass on right versions.
+        """Return a file's reports by purpose: of all its tests, or only of those that pass on correct versions.
 
         Raises:
-            CheckFailed: tests fail on right versions even after others were left out.
+            CheckFailed: tests fail on correct versions even after others were left out.
         """
         reports = {purpose: report for (file, purpose), report in self.runs.items() if file == name}
-        if _fails_on_right(reports):
+        if _fails_on_correct_version(reports):
             reports = self._reruns[name] = self._reruns.get(name) or self._rerun(name)
-        message = (
-            f"Tests in {name} fail on a right {PACKAGE}, too, so that it says nothing if they fail on a faulty one."
-        )
-        expect(not _fails_on_right(reports), message)
+        message = f"Tests in {name} also fail on a correct {PACKAGE}, so failures on faulty ones prove nothing."
+        expect(not _fails_on_correct_version(reports), message)
         return reports
 
     def _rerun(self, name: str) -> dict[str, student_test_reports.Report]:
-        """Run a file on new versions, without the tests that fail on right ones; return the reports by purpose."""
+        """Run a file on new versions, without the tests that fail on correct ones; return the reports by purpose."""
         trial = self.trial[name]
         failed_tests = trial.failed
-        first = self._plan(name, failed_tests)
+        first_runs = self._plan(name, failed_tests)
         reports = self._run(
-            [replace(first[purpose], exit_first=False) for purpose in RIGHT_VERSIONS if purpose in first]
+            [replace(first_runs[purpose], exit_first=False) for purpose in CORRECT_VERSIONS if purpose in first_runs]
         )
         deselected = tuple(sorted({*failed_tests, *(test for report in reports for test in trial.failed_in(report))}))
         message = (
-            f"No test of yours in {name} passes on every right {PACKAGE}, so that none says anything of a faulty one."
+            f"None of your tests in {name} passes on every correct {PACKAGE}, so failures on faulty ones prove nothing."
         )
         expect(len(set(trial.executed) - set(deselected)) > GIVEN_TESTS[name], message)
         runs = self._plan(name, deselected, "again")
@@ -207,25 +213,25 @@ class Examination:
         tested_faults = [
             fault for fault in faults() if FILES[fault.check] == name and self._checks & {fault.check, ENDS}
         ]
-        # A failure on a faulty version counts only for tests that pass on right versions.
+        # A failure on a faulty version counts only for tests that pass on correct versions.
         if tested_faults or RIGHT_CHECKS[name] in self._checks:
             runs[SECOND] = student_test_reports.TestRun(
-                (name,), right(STYLES[1], self._draw(name, SECOND, *salt)), exit_first=True
+                (name,), correct_version(STYLES[1], self._draw(name, SECOND, *salt)), exit_first=True
             )
             # As similar to the first version as faulty ones are, to expose tests that fail on any change of the text.
-            similar_version = reworded(self._draw(name, REWORDED, *salt))
+            similar_version = reworded_version(self._draw(name, REWORDED, *salt))
             runs[REWORDED] = student_test_reports.TestRun((name,), similar_version, exit_first=True)
             if name == LIMITS:
                 # The notebook requires approximate comparison for a function, and only advises it for a node.
-                version = bare(self._draw(name, BARE, *salt))
-                runs[BARE] = student_test_reports.TestRun((name,), version, exit_first=True)
+                bare = minimal_version(self._draw(name, BARE, *salt))
+                runs[BARE] = student_test_reports.TestRun((name,), bare, exit_first=True)
             if name in ORDER_INDEPENDENT:
-                version = right(STYLES[0], self._draw(name, BACKWARDS, *salt))
-                runs[BACKWARDS] = student_test_reports.TestRun((name,), version, backwards=True, exit_first=True)
+                first = correct_version(STYLES[0], self._draw(name, BACKWARDS, *salt))
+                runs[BACKWARDS] = student_test_reports.TestRun((name,), first, backwards=True, exit_first=True)
         for fault in tested_faults:
             draw = self._draw(name, fault.id, *salt)
             runs[fault.id] = student_test_reports.TestRun(
-                (name,), broken(fault, draw.choice(STYLES), draw), exit_first=True
+                (name,), faulty_version(fault, draw.choice(STYLES), draw), exit_first=True
             )
         return {purpose: replace(run, deselected=deselected) for purpose, run in runs.items()}
 
@@ -237,14 +243,16 @@ class Examination:
         return student_test_runs.run(self._workspace, self.source, runs)
 
 
-def _fails_on_right(reports: Mapping[str, student_test_reports.Report]) -> bool:
-    return any(not reports[purpose].passed for purpose in RIGHT_VERSIONS if purpose in reports)
+def _fails_on_correct_version(reports: Mapping[str, student_test_reports.Report]) -> bool:
+    return any(not reports[purpose].passed for purpose in CORRECT_VERSIONS if purpose in reports)
 
 
-_OTHERWISE = "on a right speed_guard that is written differently: test the contract, no attributes and no inner names"
+_ON_ANOTHER_VERSION = (
+    "on a correct speed_guard that is written differently: test only the contract, not attributes or internal names"
+)
 _WHERE = {
-    SECOND: _OTHERWISE,
-    REWORDED: _OTHERWISE,
-    BARE: _OTHERWISE,
-    BACKWARDS: "when the tests run in the opposite order: one test lives on what another has left behind",
+    SECOND: _ON_ANOTHER_VERSION,
+    REWORDED: _ON_ANOTHER_VERSION,
+    BARE: _ON_ANOTHER_VERSION,
+    BACKWARDS: "when the tests run in the opposite order: one test depends on what another leaves behind",
 }

@@ -1,4 +1,4 @@
-"""The versions of speed_guard on which a student's tests run: right ones in two styles, and faulty ones in both."""
+"""The versions of speed_guard on which a student's tests run: correct ones in two styles, and faulty ones in both."""
 
 from __future__ import annotations
 
@@ -44,69 +44,69 @@ def faults() -> tuple[Fault, ...]:
 
 
 @cache
-def style(name: str) -> versions.Version:
-    """Return the right version in this style."""
+def version_in(style: str) -> versions.Version:
+    """Return the correct version in this style."""
     first = versions.read(solution_path(PACKAGE), SCRIPTS)
-    if name == STYLES[0]:
+    if style == STYLES[0]:
         return first
-    return versions.Version({**first.files, **versions.read(FOLDER / name, SCRIPTS).files}, SCRIPTS)
+    return versions.Version({**first.files, **versions.read(FOLDER / style, SCRIPTS).files}, SCRIPTS)
 
 
-def right(name: str, draw: random.Random) -> versions.Version:
-    """Return an obfuscated right version in this style."""
-    return versions.obfuscate(style(name), draw.getrandbits(32))
+def correct_version(style: str, draw: random.Random) -> versions.Version:
+    """Return an obfuscated correct version in this style."""
+    return versions.obfuscate(version_in(style), draw.getrandbits(32))
 
 
-def reworded(draw: random.Random) -> versions.Version:
-    """Return an obfuscated right version in the first style, with one expression of each file reworded."""
-    drawn_edits = _right_edits()["drawn"]
-    return _edited({name: [draw.choice(edits)] for name, edits in drawn_edits.items()}, "in other words", draw)
+def reworded_version(draw: random.Random) -> versions.Version:
+    """Return an obfuscated correct version in the first style, with one expression of each file rewritten."""
+    drawn_edits = _harmless_edits()["drawn"]
+    return _edited({name: [draw.choice(edits)] for name, edits in drawn_edits.items()}, "reworded", draw)
 
 
-def bare(draw: random.Random) -> versions.Version:
-    """Return an obfuscated right version in the first style whose safe_speed does no more than its contract requires.
+def minimal_version(draw: random.Random) -> versions.Version:
+    """Return an obfuscated correct version in the first style whose safe_speed does no more than its contract requires.
 
-    Its computed speeds have a rounding error, and its exception has no text.
+    Its computed speeds have a rounding error, and its exception has no message.
     """
-    return _edited(_right_edits()["bare"], "without more than its contract", draw)
+    return _edited(_harmless_edits()["bare"], "reduced to its contract", draw)
 
 
-def _right_edits() -> dict[str, dict[str, list[dict[str, str]]]]:
+def _harmless_edits() -> dict[str, dict[str, list[dict[str, str]]]]:
     edits: dict[str, dict[str, list[dict[str, str]]]] = yaml.safe_load((FOLDER / "reworded.yaml").read_text())
     return edits
 
 
 def _edited(edits: dict[str, list[dict[str, str]]], label: str, draw: random.Random) -> versions.Version:
-    files = dict(style(STYLES[0]).files)
+    files = dict(version_in(STYLES[0]).files)
     for name, file_edits in edits.items():
         for edit in file_edits:
-            files[name] = _edit(files[name], edit, f"{name} {label}")
+            files[name] = _edit(files[name], edit, f"{name}, {label}")
     return versions.obfuscate(versions.Version(files, SCRIPTS), draw.getrandbits(32))
 
 
 def _edit(text: str, edit: dict[str, str], label: str) -> str:
     if text.count(edit["find"]) != 1:
-        raise GraderError(f"{label}: {edit['find']!r} stands {text.count(edit['find'])} times in the file")
+        raise GraderError(f"{label}: {edit['find']!r} occurs {text.count(edit['find'])} times in the file")
     return text.replace(edit["find"], edit["replace"])
 
 
-def broken(fault: Fault, name: str, draw: random.Random) -> versions.Version:
+def faulty_version(fault: Fault, style: str, draw: random.Random) -> versions.Version:
     """Return an obfuscated faulty version in this style.
 
     Raises:
         GraderError: the fault no longer fits the style's text.
     """
-    version, (find, replace) = style(name), fault.edits[name]
+    version, (find, replace) = version_in(style), fault.edits[style]
     text = version.files[fault.file]
     count = text.count(find)
-    if count == 0 or (count > 1 and name not in fault.last):
-        raise GraderError(f"fault {fault.id}: {find!r} stands {count} times in {fault.file} of style {name}")
+    if count == 0 or (count > 1 and style not in fault.last):
+        raise GraderError(f"fault {fault.id}: {find!r} occurs {count} times in {fault.file} of style {style}")
     head, _, tail = text.rpartition(find)
     files = {**version.files, fault.file: head + replace + tail}
     return versions.obfuscate(versions.Version(files, version.scripts), draw.getrandbits(32))
 
 
 def _fault(entry: dict[str, Any]) -> Fault:
-    edits = {name: (entry[name]["find"], entry[name]["replace"]) for name in STYLES}
-    last = frozenset(name for name in STYLES if entry[name].get("last"))
+    edits = {style: (entry[style]["find"], entry[style]["replace"]) for style in STYLES}
+    last = frozenset(style for style in STYLES if entry[style].get("last"))
     return Fault(entry["id"], entry["check"], entry["file"], edits, last)

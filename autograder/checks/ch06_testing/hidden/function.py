@@ -1,4 +1,4 @@
-"""Checks that tests of the pure function fail if safe_speed breaks its contract."""
+"""Checks that the tests of the function pass on a correct safe_speed, and fail if it breaks its contract."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ def test_limits_pass(examination: Examination) -> None:
 
 
 @check(points=1, covers=("limits-pass", "approx"), after=("limits_pass",), doc=contract.APPROX)
-@hint("Other people may write safe_speed in other words: only the contract in its docstring is sure.")
-@hint("Floats that are worked out in another order differ in the last digit: pytest.approx.")
+@hint("Other people may write safe_speed differently: rely only on the contract in its docstring.")
+@hint("Floats that are computed in another order may differ in the last digit: use pytest.approx.")
 def test_limits_right(examination: Examination) -> None:
-    """They pass on every right safe_speed, in any order."""
-    examination.expect_right(LIMITS, BACKWARDS)
+    """The tests in test_limits.py pass on every correct safe_speed, in any order."""
+    examination.expect_passed_on_correct_versions(LIMITS, BACKWARDS)
 
 
 LINES = (
@@ -35,19 +35,19 @@ LINES = (
         promise="at stop_distance and nearer, the speed is 0.0, not a little more or less.",
         points=1,
         hints=(
-            "What does it return for a wall at 0.3 m, exactly?",
+            "What exactly does it return for a wall at 0.3 m?",
             contract.MUTATE,
         ),
     ),
     Line(
         id="slow",
         covers=("slow", "function-lines"),
-        title="A test fails when the speed between the two distances is not on a straight line.",
+        title="A test fails when the speed between the two distances does not grow in a straight line.",
         promise="between the two distances the speed grows in a straight line.",
         points=2,
         hints=(
             "One point between the two distances shows that it slows down; two show that the line is straight.",
-            "Half-way, and at a quarter: assert safe_speed(0.8, 0.75) == pytest.approx(0.2).",
+            "Test half-way, and at a quarter of the way: assert safe_speed(0.8, 0.75) == pytest.approx(0.2).",
         ),
         doc=contract.APPROX,
     ),
@@ -58,7 +58,7 @@ LINES = (
         promise="at slow_distance and farther, the speed is the wanted one.",
         points=1,
         hints=(
-            "What does it return for a wall at 4 m, exactly, and at slow_distance itself? Not only: more than 0.",
+            "What exactly does it return for a wall at 4 m, and at slow_distance itself? `> 0.0` is not enough.",
             contract.MUTATE,
         ),
         doc=contract.APPROX,
@@ -66,11 +66,11 @@ LINES = (
     Line(
         id="infinity",
         covers=("infinity", "function-lines"),
-        title='A test fails when "nothing ahead" is not a clear way.',
+        title='A test fails when "nothing ahead" does not count as a clear way.',
         promise="a distance of inf is a clear way.",
         points=1,
         hints=(
-            "A sensor that sees nothing says inf.",
+            "A sensor that sees nothing reports inf.",
             "assert safe_speed(0.8, math.inf) == ...",
         ),
         doc=contract.REP_117,
@@ -78,12 +78,12 @@ LINES = (
     Line(
         id="unknown",
         covers=("unknown", "function-lines"),
-        title="A test fails when an unknown distance lets the robot go.",
-        promise="where the distance is None or nan, the speed is 0.0.",
+        title="A test fails when an unknown distance lets the robot move.",
+        promise="if the distance is None or nan, the speed is 0.0.",
         points=2,
         hints=(
-            "There are two ways of not knowing.",
-            "None, and math.nan: each deserves an assertion.",
+            "A distance can be unknown in two ways.",
+            "None and math.nan: write an assertion for each.",
         ),
     ),
     Line(
@@ -94,8 +94,8 @@ LINES = (
         points=2,
         hints=(
             "The contract's lines have an order: the first that fits decides. "
-            "Which line comes before the unknown ones?",
-            "Ask for -0.3 m/s with a wall in front, and with each way of not knowing: None, and math.nan.",
+            "Which line comes before the one about unknown distances?",
+            "Ask for -0.3 m/s with a wall in front, and with each unknown distance: None and math.nan.",
         ),
     ),
     Line(
@@ -106,8 +106,8 @@ LINES = (
         points=2,
         hints=(
             "The defaults are only defaults.",
-            "Choose both distances anew, far from 0.5 and 1.5, and ask on and beside the new line.",
-            "0 is a stop_distance, too.",
+            "Choose two other distances, far from 0.5 and 1.5. Test between them, nearer and farther.",
+            "0 is a valid stop_distance, too.",
         ),
     ),
     Line(
@@ -118,8 +118,9 @@ LINES = (
         points=2,
         hints=(
             "with pytest.raises(ValueError): ...",
-            "The condition has two parts: 0 <= stop_distance, and stop_distance < slow_distance. Equal ones break it.",
-            "It is the first line of the contract: it counts on the way back, too.",
+            "The condition has two parts: 0 <= stop_distance, and stop_distance < slow_distance. "
+            "Equal distances break the second part.",
+            "It is the first line of the contract, so it also applies on the way back.",
         ),
         doc=contract.RAISES,
     ),
@@ -127,6 +128,6 @@ LINES = (
 
 
 @check_each_row(group("function", after=RIGHT_CHECK), LINES)
-def expect_objection(line: Line, examination: Examination) -> None:
+def expect_detection(line: Line, examination: Examination) -> None:
     """Fail the check unless the tests of the file fail on every version that breaks the line."""
-    examination.expect_objection(line.id, line.promise)
+    examination.expect_detection(line.id, line.promise)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from autograder.checking import Workspace, expect, group, hint
 from autograder.checking.probes import colcon_test, given_files, installed, linters, student_test_reports
 from autograder.checks.ch06_testing.hidden.examination import Examination
-from autograder.checks.ch06_testing.hidden.faults import STYLES, style
+from autograder.checks.ch06_testing.hidden.faults import STYLES, version_in
 from autograder.checks.ch06_testing.support import contract
 from autograder.checks.ch06_testing.support.assertions import expect_no_sleep
 from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, MIN_TESTS, PACKAGE
@@ -18,15 +18,15 @@ EXTRAS = "extras_require={'test': ['pytest']} in setup.py tells colcon to use py
 
 
 @check(points=1, covers="as-given", after=("limits_pass",), doc=contract.PYTEST)
-@hint("The package is right. Where a test fails on it, change the test.")
-@hint("To see whether a test fails, break a copy, or undo the change: take the file from the course's folder again.")
+@hint("The package is correct. If a test fails on it, change the test.")
+@hint("To see whether a test fails, break a copy of the package. To undo a change, copy the course's file again.")
 def test_as_given(workspace: Workspace, examination: Examination) -> None:
-    """The module, the launch file and the configuration of the package are as they were given."""
+    """The given modules, launch file and configuration of the package are unchanged."""
     examination.expect_any_usable()
-    reference_files = style(STYLES[0]).files
+    reference_files = version_in(STYLES[0]).files
     texts = {name: text.encode() for name, text in reference_files.items()}
     changed_names = given_files.changed_files(examination.source.files, texts, GIVEN_FOLDERS)
-    expect(not changed_names, f"{' and '.join(changed_names)} of your package is not as it was given.")
+    expect(not changed_names, f"Your package changes {' and '.join(changed_names)}, which must stay as given.")
     # The runs install each version without setup.py, so only this check finds files that setup.py does not install.
     installation = installed.inspect_package(workspace.install, PACKAGE)
     missing = [
@@ -34,7 +34,7 @@ def test_as_given(workspace: Workspace, examination: Examination) -> None:
     ]
     expect(
         not missing,
-        f"{' and '.join(missing)} of your package is not installed in share/{PACKAGE}: the given setup.py names it "
+        f"Your package does not install {' and '.join(missing)} in share/{PACKAGE}. The given setup.py names the files "
         "in data_files.",
         fraction=0.5,
     )
@@ -49,21 +49,21 @@ def test_no_sleep(examination: Examination) -> None:
 
 
 @check(points=1, covers="no-sleep", after=("guard_right", "launch_right"), doc=contract.PYTEST)
-@hint("Each loop that waits needs a deadline, after which the test fails.")
-@hint("spin_until_future_complete and wait_for_service have a timeout_sec; rclpy.spin has none.")
+@hint("Each loop that waits needs a deadline. At its deadline, the test fails.")
+@hint("spin_until_future_complete and wait_for_service have a timeout_sec. rclpy.spin has none.")
 def test_ends(examination: Examination) -> None:
-    """The tests end by themselves on a node that never answers."""
+    """The tests end by themselves, even on a node that never answers."""
     for name in (GUARD, LAUNCH):
         examination.expect_usable(name)
     endless_files = examination.endless_files()
     expect(
         not endless_files,
-        f"On a faulty version, the tests in {' and '.join(endless_files)} did not end, and had to be stopped.",
+        f"On a faulty version, the tests in {' and '.join(endless_files)} did not end and had to be stopped.",
     )
 
 
 @check(points=2, covers="colcon-finds", after=("limits_pass",), doc=contract.CLI)
-@hint("`colcon test-result --all --verbose` says how many tests there were. 0 is no success.", EXTRAS)
+@hint("`colcon test-result --all --verbose` says how many tests were run. 0 tests is not a success.", EXTRAS)
 def test_colcon(examination: Examination) -> None:
     """`colcon test` runs the tests of all three files."""
     examination.expect_any_usable()
@@ -77,9 +77,9 @@ def test_colcon(examination: Examination) -> None:
 
 
 @check(points=2, covers="linters", after=("colcon",), doc=contract.CLI)
-@hint("A test_depend on a linter does nothing by itself: it needs test/test_flake8.py and test/test_pep257.py.")
-@hint("A test that calls no linter, or asserts nothing, finds nothing: take it as `ros2 pkg create` writes it.")
-@hint("Run `ament_flake8` and `ament_pep257` in the package's folder: they name file and line.")
+@hint("A test_depend does not run a linter: test/test_flake8.py and test/test_pep257.py do.")
+@hint("A test that calls no linter, or asserts nothing, finds nothing: use the one that `ros2 pkg create` writes.")
+@hint("Run `ament_flake8` and `ament_pep257` in the package's folder: they print file and line.")
 def test_linters(workspace: Workspace, examination: Examination) -> None:
     """The linters flake8 and pep257 run as tests, and find nothing."""
     examination.expect_any_usable()

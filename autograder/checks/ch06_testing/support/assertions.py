@@ -12,9 +12,9 @@ MAX_FAILED = 50  # the largest number of failed tests with which a file is still
 
 
 def is_usable(name: str, report: student_test_reports.Report | None) -> bool:
-    """Return whether more tests of a file than the given ones pass on a right version.
+    """Return whether more tests of a file than the given ones pass on a correct version.
 
-    Only then can the file tell right and faulty versions apart.
+    Only then can the file tell correct and faulty versions apart.
     """
     if report is None or report.status not in (0, 1) or len(report.failed) > MAX_FAILED:
         return False
@@ -65,5 +65,5 @@ def describe_failure(name: str, report: student_test_reports.Report, where: str)
         return f"No test in {name} ran {where}."
     if report.status is None:
         reason = report.exit_reason.value.replace("_", " ") if report.exit_reason else "no report"
-        return f"The tests in {name} ended {where} before pytest could say how they went: {reason}."
+        return f"The tests in {name} ended {where} before pytest could report results: {reason}."
     return f"pytest cannot run {name} {where}; it ended with exit status {report.status}."

@@ -21,12 +21,12 @@ TWIST = "https://docs.ros.org/en/jazzy/p/geometry_msgs/msg/Twist.html"
 REP_117 = "https://www.ros.org/reps/rep-0117.html"
 
 MUTATE = "Break that line yourself in a copy of the package, run your tests, and see whether one fails."
-ALL_PASS = "A test that fails asks for something that the contract does not say, or the package was changed by hand."
-SPIN = "Nothing arrives while nobody spins: until(...) has to call spin_once until the condition holds."
+ALL_PASS = "Either a failing test asks for more than the contract states, or the package was changed by hand."
+SPIN = "Messages arrive only while the executor spins: until(...) has to call spin_once until the condition holds."
 SAME_DOMAIN = "The launched program and the test have to be in the same domain: SetEnvironmentVariable comes first."
 WAIT = (
-    "A program takes a second to start, and its name may be found later than its topics: wait for each, with a "
-    "deadline, before you rely on it."
+    "A program takes a second to start, and its name may be found later than its topics. Wait for both, with a "
+    "deadline, before you use them."
 )
 NO_SLEEP = (
     "A sleep is too long on a fast machine and too short on a busy one.",

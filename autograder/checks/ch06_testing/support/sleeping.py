@@ -1,4 +1,4 @@
-"""Finds sleeps in Python source, which is parsed and never run."""
+"""Finds calls that sleep in Python source, which is parsed and never run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ NAMES = frozenset({"sleep", "sleep_for", "sleep_until"})  # functions and method
 
 
 def sleeps(source: bytes) -> list[int]:
-    """Return the numbers of the lines with sleeps; an empty list if the source is not valid Python."""
+    """Return the numbers of the lines that sleep; an empty list if the source is not valid Python."""
     tree = files.parse_python(source) if len(source) <= MAX_BYTES else None
     nodes = list(ast.walk(tree or ast.Module([], [])))
     import_aliases = [alias for node in nodes if isinstance(node, ast.ImportFrom) for alias in node.names]

@@ -13,7 +13,7 @@ from autograder.checks.ch06_testing.support.contract import GUARD, LAUNCH, LIMIT
 Reports = dict[tuple[str, str], student_test_reports.Report]
 GUARD_FILE = "speed_guard/guard.py"
 
-# Mutants that differ a lot from the right package. The hidden ones differ in one line each.
+# These mutants differ a lot from the correct package. Each hidden one differs in about one line.
 LETS_ALL_PASS = {"speed_guard/limits.py": "def safe_speed(wanted, *distances, **more_distances):\n    return wanted\n"}
 GOES_BLIND = {
     "speed_guard/limits.py": """import math
@@ -76,7 +76,7 @@ def generate_launch_description():
     return LaunchDescription([Node(package='speed_guard', executable='speed_guard', name='speed_guard')])
 """
 }
-RIGHT, ALL_PASS, BLIND, HALF = "right", "all pass", "blind", "half"
+ORIGINAL, ALL_PASS, BLIND, HALF = "original", "all pass", "blind", "half"
 TURNED, TRUSTING, UNCONFIGURED = "turned", "trusting", "unconfigured"
 
 
@@ -100,7 +100,7 @@ def reports(workspace: Workspace, source: student_test_reports.Source) -> Report
         (LIMITS, HALF): HALF_IN_BETWEEN,
     }
     runs = {
-        (name, RIGHT): student_test_reports.TestRun(
+        (name, ORIGINAL): student_test_reports.TestRun(
             (name,), versions.Version(files, SCRIPTS), sniffed=name == GUARD, is_public=True
         )
         for name in MIN_TESTS
@@ -117,28 +117,28 @@ def reports(workspace: Workspace, source: student_test_reports.Source) -> Report
 @hint("Run them: shell('cd ws/src/speed_guard && python -m pytest test/test_limits.py').", contract.ALL_PASS)
 def test_limits_pass(reports: Reports) -> None:
     """At least six tests in test_limits.py run, and all pass on the package as it is."""
-    expect_passed(LIMITS, reports.get((LIMITS, RIGHT)))
+    expect_passed(LIMITS, reports.get((LIMITS, ORIGINAL)))
 
 
 @check(points=1, covers="function-lines", group="function", needs=("limits_pass",), doc=contract.PYTEST)
-@hint("Which line of the contract says that it stops?", contract.MUTATE)
+@hint("Which line of the contract says that the robot stops?", contract.MUTATE)
 def test_limits_notice(reports: Reports) -> None:
-    """One of them fails when safe_speed returns what was wanted, whatever is ahead."""
-    _expect_objection(reports, LIMITS, ALL_PASS)
+    """A test in test_limits.py fails when safe_speed returns the wanted speed, whatever is ahead."""
+    _expect_detection(reports, LIMITS, ALL_PASS)
 
 
 @check(points=1, covers="unknown", group="function", needs=("limits_pass",), doc=contract.PYTEST)
 @hint("A distance is unknown in two ways: None and math.nan.", contract.MUTATE)
 def test_limits_unknown(reports: Reports) -> None:
-    """One of them fails when safe_speed takes an unknown distance for a clear way."""
-    _expect_objection(reports, LIMITS, BLIND)
+    """A test in test_limits.py fails when safe_speed treats an unknown distance as a clear way."""
+    _expect_detection(reports, LIMITS, BLIND)
 
 
 @check(points=1, covers="slow", group="function", needs=("limits_pass",), doc=contract.PYTEST)
-@hint("Half way, half the speed is right. What about a quarter of the way?", contract.MUTATE)
+@hint("Half-way, half the speed is correct. What is correct at a quarter of the way?", contract.MUTATE)
 def test_limits_line(reports: Reports) -> None:
-    """One of them fails when safe_speed allows half of what was wanted everywhere between the two distances."""
-    _expect_objection(reports, LIMITS, HALF)
+    """A test in test_limits.py fails when safe_speed returns half the wanted speed anywhere between the distances."""
+    _expect_detection(reports, LIMITS, HALF)
 
 
 @check(points=1, covers="guard-pass", group="node", doc=contract.PYTEST)
@@ -146,35 +146,36 @@ def test_limits_line(reports: Reports) -> None:
 @hint(contract.SPIN, "self.test_executor.spin_once(timeout_sec=0.05), as in spin. Then look at the clock.")
 def test_guard_pass(reports: Reports) -> None:
     """At least five tests in test_guard.py run, and all pass on the package as it is."""
-    expect_passed(GUARD, reports.get((GUARD, RIGHT)))
+    expect_passed(GUARD, reports.get((GUARD, ORIGINAL)))
 
 
 @check(points=1, covers="node-lines", group="node", needs=("guard_pass",), doc=contract.PYTEST)
-@hint("robot.see(0.2), and then?", contract.MUTATE)
+@hint("What should robot.ask(0.8) return after robot.see(0.2)?", contract.MUTATE)
 def test_guard_notice(reports: Reports) -> None:
-    """One of them fails when the guard lets every command pass."""
-    _expect_objection(reports, GUARD, ALL_PASS)
+    """A test in test_guard.py fails when the guard lets every command pass."""
+    _expect_detection(reports, GUARD, ALL_PASS)
 
 
 @check(points=1, covers="turn", group="node", needs=("guard_pass",), doc=contract.PYTEST)
 @hint("robot.ask(0.5, 0.7) returns the whole answer: look at angular.z, too.", contract.MUTATE)
 def test_guard_turn(reports: Reports) -> None:
-    """One of them fails when the guard turns to the other side."""
-    _expect_objection(reports, GUARD, TURNED)
+    """A test in test_guard.py fails when the guard turns to the other side."""
+    _expect_detection(reports, GUARD, TURNED)
 
 
 @check(points=1, covers="stale", group="node", needs=("guard_pass",), doc=contract.PYTEST)
-@hint("With guard(timeout=HASTY), see(4.0), then spin for longer than that, then ask(0.8).", contract.MUTATE)
+@hint("With guard(timeout=HASTY): see(4.0), spin for longer than HASTY, and then ask(0.8).", contract.MUTATE)
 def test_guard_forgets(reports: Reports) -> None:
-    """One of them fails when the guard trusts a distance however old it is."""
-    _expect_objection(reports, GUARD, TRUSTING)
+    """A test in test_guard.py fails when the guard uses a distance, however old it is."""
+    _expect_detection(reports, GUARD, TRUSTING)
 
 
 @check(points=1, covers="own-domain", group="node", needs=("guard_pass",), doc=contract.DOMAIN)
 @hint("rclpy.init(context=context, domain_id=domain) in the fixture, and context=context for each node.")
 def test_alone(reports: Reports) -> None:
     """While test_guard.py runs, none of its nodes is in the default domain."""
-    expect(not reports[GUARD, RIGHT].joined_domain, "One of them was: any other robot would hear it.")
+    message = "One of its nodes was in the default domain, where other robots could hear it."
+    expect(not reports[GUARD, ORIGINAL].joined_domain, message)
 
 
 @check(points=1, covers="no-sleep", group="node", needs=("guard_pass",), doc=contract.PYTEST)
@@ -188,25 +189,25 @@ def test_no_sleep(source: student_test_reports.Source) -> None:
 @hint(contract.SAME_DOMAIN, contract.WAIT)
 def test_launch_pass(reports: Reports) -> None:
     """A test in test_launch.py runs, and passes on the package as it is."""
-    expect_passed(LAUNCH, reports.get((LAUNCH, RIGHT)))
+    expect_passed(LAUNCH, reports.get((LAUNCH, ORIGINAL)))
 
 
 @check(points=1, covers="launch-promise", group="launch", needs=("launch_pass",), doc=contract.INTEGRATION)
-@hint("At which distance does a guard with config/guard.yaml answer otherwise than one with the defaults?")
-@hint("At 0.4 m: the defaults say stop, the configuration does not.")
+@hint("At which distance do a guard with config/guard.yaml and one with the defaults answer differently?")
+@hint("At 0.4 m, a guard with the defaults stops, and one with the configuration does not.")
 def test_launch_notice(reports: Reports) -> None:
-    """It fails when the launch file forgets config/guard.yaml."""
-    _expect_objection(reports, LAUNCH, UNCONFIGURED)
+    """A test in test_launch.py fails when the launch file does not use config/guard.yaml."""
+    _expect_detection(reports, LAUNCH, UNCONFIGURED)
 
 
 @check(points=1, covers="linters", group="craft", doc=contract.CLI)
-@hint("Run `ament_flake8` and `ament_pep257` in ws/src/speed_guard: they name file and line.")
+@hint("Run `ament_flake8` and `ament_pep257` in ws/src/speed_guard: they print file and line.")
 def test_linters(workspace: Workspace, source: student_test_reports.Source) -> None:
     """The linters flake8 and pep257 find nothing in the package and in your tests."""
     findings = linters.lint(workspace, source)
     expect(not findings, "; ".join(f"{name}: {finding}" for name, finding in findings.items()))
 
 
-def _expect_objection(reports: Reports, name: str, mutant: str) -> None:
-    is_detected = reports[name, mutant].detects_fault(reports[name, RIGHT])
-    expect(is_detected, f"All tests in {name} pass on that mutant, too.")
+def _expect_detection(reports: Reports, name: str, mutant: str) -> None:
+    is_detected = reports[name, mutant].detects_fault(reports[name, ORIGINAL])
+    expect(is_detected, f"All tests in {name} also pass on that mutant.")

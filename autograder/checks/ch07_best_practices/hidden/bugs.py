@@ -47,8 +47,8 @@ def call_with_bugs(workspace: Workspace) -> BugResults:
         add(calls.call("setattr", number, "side_effect", error, module="builtins"))
         callback_steps[bug] = add(calls.callback("timer_callback", on=node))
     seed = ["--ros-args", *parameters.override_arguments({"seed": 5})]
-    other = add(calls.call("RobustNode", generator=calls.result_of(generator), cli_args=seed))
-    add(calls.callback("timer_callback", on=other))
+    seeded_node = add(calls.call("RobustNode", generator=calls.result_of(generator), cli_args=seed))
+    add(calls.callback("timer_callback", on=seeded_node))
     results = calls.run_steps(workspace, ROBUST, *plan.steps, network=True)
     callback_results = {bug: results[step] for bug, step in callback_steps.items()}
     return BugResults(results[node], results[namespace], callback_results, results[-1])

@@ -28,30 +28,32 @@ def judge_masked(
 def judge_means(
     workspace: Workspace, cases: Sequence[list[float]], judge: Callable[[list[float], object], None]
 ) -> None:
-    """Take the means of all lists in one process, and judge the results."""
+    """Call mean_distance for all lists in one process, and judge the results."""
     outcomes = calls.run_steps(workspace, UTILS, *(calls.call("mean_distance", case) for case in cases))
     pairs = zip(cases, outcomes, strict=True)
     expect_all(pairs, lambda pair: judge(pair[0], calls.value(pair[1], f"mean_distance({pair[0]})")))
 
 
 def judge_averages(workspace: Workspace, cases: Sequence[Series], *, fraction: float) -> None:
-    """Fail the check unless a DataProcessor for each series, all in one process, has the right average at each time."""
+    """Fail the check unless a DataProcessor for each series, all in one process, has the correct averages."""
     plan = calls.Plan()
     processors = [plan.add(calls.call("DataProcessor", *case.arguments)) for case in cases]
-    numbers: dict[Series, list[int]] = {}
+    average_steps: dict[Series, list[int]] = {}
     for case, processor in zip(cases, processors, strict=True):
-        numbers[case] = []
+        average_steps[case] = []
         for scan in case.scans:
             plan.add(calls.call("process", list(scan.readings), scan.low, scan.high, on=processor))
-            numbers[case].append(plan.add(calls.call("average", on=processor)))
+            average_steps[case].append(plan.add(calls.call("average", on=processor)))
     outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
 
     def judge(case: Series) -> None:
-        for count, (number, expected) in enumerate(zip(numbers[case], averages(case), strict=True), start=1):
-            average = calls.value(outcomes[number], f"average(), after {case.first(count)},")
-            message = f"After {case.first(count)}, {case.name}.average() is {average} instead of {expected}."
+        for count, (step, expected) in enumerate(zip(average_steps[case], averages(case), strict=True), start=1):
+            average = calls.value(outcomes[step], f"average(), after {case.describe_first(count)},")
+            message = (
+                f"After {case.describe_first(count)}, {case.constructor}.average() is {average} instead of {expected}."
+            )
             if len(cases) > 1:
-                message += " The program has other DataProcessors, too."
+                message += " The program also has other DataProcessors."
             expect(calls.same(average, expected), message, fraction=fraction)
 
-    expect_all(numbers, judge)
+    expect_all(average_steps, judge)

@@ -59,25 +59,25 @@ def test_keeps_places(workspace: Workspace, draw: random.Random) -> None:
     """mask_invalid returns as many readings as it was given, each in its place."""
 
     def judge(case: Readings, masked: list[float]) -> None:
-        lengths = f"{len(case.readings)} readings went in, {len(masked)} came out"
-        expect(len(masked) == len(case.readings), f"{lengths}: {case.call} returned {masked}.")
-        for place, reading in enumerate(case.readings):
-            is_good = case.low < reading < case.high
-            message = f"The good reading in place {place} came back as {masked[place]}: {case.call} returned {masked}."
-            expect(not is_good or calls.same(masked[place], reading), message)
+        lengths = f"{len(masked)} readings instead of {len(case.readings)}"
+        expect(len(masked) == len(case.readings), f"{case.call} returned {lengths}: {masked}.")
+        for index, reading in enumerate(case.readings):
+            is_valid = case.low < reading < case.high
+            message = f"The valid reading at index {index} became {masked[index]}: {case.call} returned {masked}."
+            expect(not is_valid or calls.same(masked[index], reading), message)
 
     judge_masked(workspace, draw_cases(scans_of(GOOD | PHANTOMS), draw, 20), judge)
 
 
 @check(points=2, covers=("phantoms", "mask"), after=("keeps_places",), doc=REP_117)
-@hint(RULE_MASK, "0.0, a negative number and one beyond range_max are no distances; nan stays nan.")
+@hint(RULE_MASK, "0.0, a negative number and a number above range_max are not distances. nan stays nan.")
 def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
-    """mask_invalid puts nan where a number cannot be a measurement."""
+    """mask_invalid replaces each number that cannot be a measurement with nan."""
 
     def judge(case: Readings, masked: list[float]) -> None:
         unmasked_readings = [reading for reading in masked if not calls.same(reading, nan)]
         expect(not unmasked_readings, f"{case.call} returned {masked}: each of these readings should become nan.")
-        message = f"Of {list(case.readings)}, only {len(masked)} were replaced by nan, and the others dropped."
+        message = f"Of {list(case.readings)}, only {len(masked)} were replaced with nan. The others were dropped."
         expect(len(masked) == len(case.readings), message, fraction=0.5)  # another check tests the places of readings
 
     judge_masked(workspace, draw_cases(scans_of(PHANTOMS, min_size=1), draw, 20), judge)
@@ -101,9 +101,9 @@ def test_limits_count(workspace: Workspace, draw: random.Random) -> None:
 
 
 @check(points=2, covers=("infinities", "mask"), after=("keeps_places",), doc=REP_117)
-@hint("REP 117: +inf says that nothing came back, -inf that something is too near.", RULE_MASK)
+@hint("In REP 117, +inf means that nothing came back, and -inf that something is too near.", RULE_MASK)
 def test_infinities_stay(workspace: Workspace, draw: random.Random) -> None:
-    """Both infinities are statements of the lidar, and stay."""
+    """mask_invalid keeps both infinities, which have a meaning in REP 117."""
 
     def judge(case: Readings, masked: list[float]) -> None:
         expect(calls.same(masked, case.masked), f"{case.call} returned {masked}: inf and -inf stay, in their places.")
@@ -112,15 +112,17 @@ def test_infinities_stay(workspace: Workspace, draw: random.Random) -> None:
 
 
 @check(points=2, covers="mask", after=("keeps_places",))
-@hint("A lidar says its own limits: range_min and range_max are arguments.", "Write no 0.1 and no 10.0.")
+@hint("Each lidar has its own limits: the arguments range_min and range_max.", "Do not write 0.1 or 10.0.")
 def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> None:
-    """The limits are the lidar's own, not fixed numbers."""
+    """mask_invalid uses the lidar's own limits, not fixed numbers."""
 
     def judge(case: Readings, masked: list[float]) -> None:
         actual, expected = kept_readings(masked), kept_readings(case.masked)
-        advice = f"it should keep {expected or 'none'}, and put nan in the place of the others."
+        advice = f"it should keep {expected or 'none'}, and replace all others with nan."
         # Keeping a reading that is only just beyond a limit costs less.
-        is_blatant = len(actual) < len(expected) or any(case.beyond(reading) > 2 * BEYOND_LIMIT for reading in actual)
+        is_blatant = len(actual) < len(expected) or any(
+            case.distance_beyond_limits(reading) > 2 * BEYOND_LIMIT for reading in actual
+        )
         fraction = 0.0 if is_blatant else 0.75
         expect(calls.same(actual, expected), f"{case.call} returned {masked}: {advice}", fraction=fraction)
 
@@ -128,16 +130,16 @@ def test_the_lidars_own_limits(workspace: Workspace, draw: random.Random) -> Non
 
 
 @check(points=1, covers=("leave-lists", "mask"), after=("keeps_places",))
-@hint("Build a new list, leave the one that came as it is.", "ranges[i] = ... changes the caller's list.")
+@hint("Build a new list, and leave the given one as it is.", "ranges[i] = ... changes the caller's list.")
 def test_input_untouched(workspace: Workspace, draw: random.Random) -> None:
-    """What is given to mask_invalid, and to process, is left as it was."""
-    plain = Readings((0.0, 1.0, 99.0))
+    """mask_invalid, mean_distance and process do not change the lists that they are given."""
+    plain_case = Readings((0.0, 1.0, 99.0))
     plan, cases = (
         calls.Plan(),
-        [plain, *draw_cases(scans_of(GOOD | st.just(inf)) | scans_of(GOOD | PHANTOMS), draw, 12)],
+        [plain_case, *draw_cases(scans_of(GOOD | st.just(inf)) | scans_of(GOOD | PHANTOMS), draw, 12)],
     )
     processor = plan.add(calls.call("DataProcessor", 3))
-    numbers = []
+    mask_steps = []
     for case in cases:
         limits, readings = (case.low, case.high), list(case.readings)
         readings_step = plan.add(calls.call("list", readings, module="builtins"))
@@ -145,13 +147,13 @@ def test_input_untouched(workspace: Workspace, draw: random.Random) -> None:
         plan.add(calls.call("is_", calls.result_of(readings_step), calls.result_of(masked), module="operator"))
         plan.add(calls.call("process", readings, *limits, on=processor))
         plan.add(calls.call("mean_distance", readings))
-        numbers.append(masked)
+        mask_steps.append(masked)
     outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
 
-    def judge(number: int) -> None:
-        case = cases[numbers.index(number)]
-        masked, is_same, processed, mean = outcomes[number : number + 4]
-        if case is plain:  # other checks test whether the functions take other readings
+    def judge(step: int) -> None:
+        case = cases[mask_steps.index(step)]
+        masked, is_same, processed, mean = outcomes[step : step + 4]
+        if case is plain_case:  # other checks test whether the functions take other readings
             calls.value(masked, case.call)
             calls.value(processed, f"DataProcessor(3).process({case!r})")
         for function, outcome in (("mask_invalid", masked), ("process", processed), ("mean_distance", mean)):
@@ -161,7 +163,7 @@ def test_input_untouched(workspace: Workspace, draw: random.Random) -> None:
         message = f"{case.call} returned the caller's list itself instead of a new one."
         expect(is_same.value is False, message, fraction=0.75)
 
-    expect_all(numbers, judge)
+    expect_all(mask_steps, judge)
 
 
 @check(points=2, covers="mean")
@@ -172,17 +174,17 @@ def test_mean(workspace: Workspace, draw: random.Random) -> None:
     def judge(readings: list[float], mean: object) -> None:
         expected = mean_of(readings)
         assert expected is not None
-        is_right = isinstance(mean, int | float) and abs(mean - expected) < 1e-9
+        is_correct = isinstance(mean, int | float) and abs(mean - expected) < 1e-9
         message = f"mean_distance({readings}) returned {mean} instead of {expected:.4f}."
-        expect(is_right, message, fraction=0.0 if expected else 0.5)
+        expect(is_correct, message, fraction=0.0 if expected else 0.5)
 
     judge_means(workspace, draw_cases(lists_with_a_mean(), draw, 25), judge)
 
 
 @check(points=1, covers="mean", after=("mean",))
-@hint("Ask whether there is a finite reading before you divide.", "None says: not known. 0.0 says: touching.")
+@hint("Check that there is a finite reading before you divide.", "None means not known. 0.0 would mean touching.")
 def test_no_mean(workspace: Workspace, draw: random.Random) -> None:
-    """Without a finite reading, mean_distance is None."""
+    """mean_distance returns None if no reading is finite."""
 
     def judge(readings: list[float], mean: object) -> None:
         expect(mean is None, f"mean_distance({readings}) returned {mean} instead of None.")
@@ -191,14 +193,14 @@ def test_no_mean(workspace: Workspace, draw: random.Random) -> None:
 
 
 @check(points=1, covers=("sequences", "mask"), after=("keeps_places", "mean"))
-@hint("Go through it by `for`, and make a list of your own.", "A numpy array is neither true nor false, and not `[]`.")
+@hint("Loop over the readings with `for`, and build a list of your own.", "`if ranges:` raises for a numpy array.")
 def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
-    """The readings may come as a tuple, as an array.array or as a numpy array."""
+    """The utilities accept readings in a tuple, an array.array or a numpy array."""
     eighths = st.integers(2, 47).map(lambda number: number / 8)  # exact in 32 bits
     odd_readings = st.sampled_from((nan, inf, 18.0))
     drawn_scans = scans_of(eighths | odd_readings, low=0.125)
-    plain = Readings((1.5, nan, 4.25, 18.0, inf), 0.125)
-    cases = [plain, *draw_cases(drawn_scans | scans_of(eighths, low=0.125), draw, 8)]
+    plain_case = Readings((1.5, nan, 4.25, 18.0, inf), 0.125)
+    cases = [plain_case, *draw_cases(drawn_scans | scans_of(eighths, low=0.125), draw, 8)]
     plan, first_steps = calls.Plan(), {}
     for case in cases:
         for kind, (module, name, first) in SEQUENCES.items():
@@ -211,47 +213,47 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
             first_steps[case, kind] = masked
     outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
 
-    def judge(run: tuple[Readings, str]) -> None:
-        case, kind = run
-        start, list_start, readings = first_steps[run], first_steps[case, "a list"], list(case.readings)
+    def judge(key: tuple[Readings, str]) -> None:
+        case, kind = key
+        start, list_start, readings = first_steps[key], first_steps[case, "a list"], list(case.readings)
         situation, type_name = f"With {readings} as {kind}", outcomes[start + len(FUNCTIONS) + 1].value
         message = f"{situation}, mask_invalid returned a value of type {type_name} instead of a list."
         expect(bool(outcomes[start].raised) or type_name == "list", message, fraction=0.75)
         for number, function in enumerate(FUNCTIONS):
-            with_list = outcomes[list_start + number]  # other checks test whether this result is right
-            if case is plain or not with_list.raised:
+            list_result = outcomes[list_start + number]  # other checks test whether this result is correct
+            if case is plain_case or not list_result.raised:
                 actual = calls.value(outcomes[start + number], f"{situation}, {function}")
-                message = f"{situation}, {function} returned {actual}, and as a list {with_list.value}."
-                expect(calls.same(actual, with_list.value), message)
+                message = f"{situation}, {function} returned {actual}. With a list, it returned {list_result.value}."
+                expect(calls.same(actual, list_result.value), message)
 
     expect_all(first_steps, judge)
 
 
 @check(points=2, covers=("history", "process"), after=("keeps_places", "mean"), doc=DEQUE)
-@hint("deque(maxlen=history).", "The oldest mean goes when a new one comes and there is no room.")
+@hint("deque(maxlen=history).", "When the history is full, a new mean replaces the oldest one.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
-    """DataProcessor remembers the means of as many scans as it was told, the newest ones."""
-    full = Series(tuple(draw_cases(GOOD_SCANS, draw, 12)), draw.randint(3, 6))
-    judge_averages(workspace, [full], fraction=0.0)
+    """DataProcessor remembers the means of the newest scans, and at most `history` of them."""
+    long_series = Series(tuple(draw_cases(GOOD_SCANS, draw, 12)), draw.randint(3, 6))
+    judge_averages(workspace, [long_series], fraction=0.0)
     judge_averages(workspace, draw_cases(series(GOOD_SCANS, st.integers(1, 5)), draw, 12), fraction=0.5)
-    default = Series(tuple(Readings((metres / 1000,)) for metres in draw.sample(range(1000, 5000), 107)), None)
-    judge_averages(workspace, [default], fraction=0.75)
+    scans = tuple(Readings((millimetres / 1000,)) for millimetres in draw.sample(range(1000, 5000), 107))
+    judge_averages(workspace, [Series(scans, None)], fraction=0.75)
 
 
 @check(points=1, covers=("process", "average"), after=("bounded_history", "no_mean"))
 @hint("Append the mean only if it is not None.", "A scan without a distance says nothing about distances.")
 def test_blind_scans_leave_no_mean(workspace: Workspace, draw: random.Random) -> None:
-    """A scan without a finite distance leaves no trace in the history, and without history there is no average."""
-    good, blind = (Readings((2.0,)), Readings((4.0,))), Readings((nan,))
-    judge_averages(workspace, [Series((blind, good[0], blind, blind, good[1]), 3)], fraction=0.0)
+    """A scan without a finite distance adds nothing to the history. With an empty history, average() is None."""
+    near, far, blind = Readings((2.0,)), Readings((4.0,)), Readings((nan,))
+    judge_averages(workspace, [Series((blind, near, blind, blind, far), 3)], fraction=0.0)
     scans = ONE_BEAM | st.just(AT_ZERO) | BLIND_SCANS
     judge_averages(workspace, draw_cases(series(scans, st.just(MAX_SCANS)), draw, 20), fraction=0.5)
 
 
 @check(points=1, covers="silent", after=("masks_phantoms", "mean", "bounded_history"))
-@hint("A library returns data; who calls it decides what is logged.", "Remove print().")
+@hint("A library returns data. Its caller decides what is logged.", "Remove print().")
 def test_prints_nothing(workspace: Workspace, draw: random.Random) -> None:
-    """The utilities print nothing: what to say, and how often, is the node's business."""
+    """The utilities print nothing: the node decides what is logged, and how often."""
     outcomes = calls.run_steps(
         workspace,
         UTILS,
@@ -274,7 +276,7 @@ def test_prints_nothing(workspace: Workspace, draw: random.Random) -> None:
         calls.call("getvalue", on=0),
     )
     for outcome in outcomes:
-        expect(outcome.raised != "NotImplementedError", "They are still to be written.")
+        expect(outcome.raised != "NotImplementedError", "The utilities are still to be written.")
     printed_text, errors = "".join(outcome.printed for outcome in outcomes), outcomes[-1].value
-    expect(not printed_text, f"They printed: {printed_text[:80]!r}")
-    expect(not errors, f"They printed on the standard error stream: {str(errors)[:80]!r}", fraction=0.5)
+    expect(not printed_text, f"The utilities printed {printed_text[:80]!r}.")
+    expect(not errors, f"The utilities printed to the standard error stream: {str(errors)[:80]!r}.", fraction=0.5)

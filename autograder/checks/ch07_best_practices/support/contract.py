@@ -15,8 +15,8 @@ MAX_ERRORS = 10  # failures in a row: with more of them, RobustNode is unstable 
 TOLERANCE = 1e-4  # m: a range is a 32-bit float
 
 RULE_MASK = "A reading is kept when it is an infinity or range_min <= reading <= range_max; else it becomes nan."
-RULE_PLACE = "The place in the list is the bearing: the list that comes back is as long as the one that went in."
-RULE_MEAN = "math.isfinite(reading) leaves nan and both infinities out."
+RULE_PLACE = "A reading's place in the list is its bearing: the returned list is as long as the given one."
+RULE_MEAN = "math.isfinite(reading) is False for nan and for both infinities."
 RULE_STATUS = "ok; failed: N in a row; unstable: N in a row."
 REP_117 = "https://www.ros.org/reps/rep-0117.html"
 QOS = "https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Quality-of-Service-Settings.html"

@@ -42,7 +42,7 @@ class Readings:
         """Whether the lidar is the usual one."""
         return (self.low, self.high) == (LOW, HIGH)
 
-    def beyond(self, reading: float) -> float:
+    def distance_beyond_limits(self, reading: float) -> float:
         """Return by how many metres a reading is beyond the limits, negative if it is within them."""
         return max(self.low - reading, reading - self.high)
 
@@ -68,18 +68,18 @@ class Series:
         return () if self.history is None else (self.history,)
 
     @property
-    def name(self) -> str:
+    def constructor(self) -> str:
         """The call of DataProcessor."""
         return f"DataProcessor({self.history or ''})"
 
-    def first(self, count: int) -> str:
+    def describe_first(self, count: int) -> str:
         """Describe the first `count` scans."""
         shown_scans = ", ".join(str(list(scan.readings)) for scan in self.scans[max(0, count - SHOWN_SCANS) : count])
-        return f"{count} scan{'s' * (count > 1)}, {'the last of them ' * (count > SHOWN_SCANS)}{shown_scans}"
+        return f"{count} scan{'s' * (count > 1)} ({'the newest are ' * (count > SHOWN_SCANS)}{shown_scans})"
 
 
 def kept_readings(masked: list[Any]) -> list[float]:
-    """Return the numbers that are not masked, in ascending order. Another check tests their places."""
+    """Return the numbers that are not masked, in ascending order. Another check tests their order in the list."""
     return sorted(reading for reading in masked if isinstance(reading, int | float) and not isnan(reading))
 
 
@@ -92,22 +92,22 @@ def mean_of(readings: Iterable[float]) -> float | None:
 def averages(case: Series) -> list[float | None]:
     """Requirement: after each scan, the mean of the newest `history` means. A scan without a mean does not count."""
     means = [mean_of(scan.masked) for scan in case.scans]
-    known = ([mean for mean in means[:count] if mean is not None] for count in range(1, len(means) + 1))
-    return [mean_of(each[-(case.history or DEFAULT_HISTORY) :]) for each in known]
+    known_means = ([mean for mean in means[:count] if mean is not None] for count in range(1, len(means) + 1))
+    return [mean_of(each[-(case.history or DEFAULT_HISTORY) :]) for each in known_means]
 
 
 # Strategies.
 
 
-def metres(low: float, high: float) -> st.SearchStrategy[float]:
+def distances_between(low: float, high: float) -> st.SearchStrategy[float]:
     """Draw a distance in whole millimetres, strictly between two distances."""
     return st.integers(round(low * 1000) + 1, round(high * 1000) - 1).map(lambda number: number / 1000)
 
 
-GOOD = metres(LOW, HIGH)
+GOOD = distances_between(LOW, HIGH)
 # Plain numbers that the usual lidar cannot have measured.
 PLAIN_PHANTOMS = (0.0, nan, 50.0, -1.0, -0.0, 1e9)
-PHANTOMS = st.sampled_from(PLAIN_PHANTOMS) | metres(0.0, LOW) | metres(HIGH, 2 * HIGH)
+PHANTOMS = st.sampled_from(PLAIN_PHANTOMS) | distances_between(0.0, LOW) | distances_between(HIGH, 2 * HIGH)
 
 
 def scans_of(
@@ -121,26 +121,26 @@ def scans_of(
 def other_lidars(draw: st.DrawFn, *, at_limits: bool) -> Readings:
     """Draw readings of a lidar with any limits: exactly at the limits, or around them."""
     if at_limits:
-        low, high = draw(metres(0.1, 2.0)), draw(metres(3.0, 9.0))
-        return Readings((*draw(st.lists(metres(low, high), max_size=4)), low, high), low, high)
-    low = draw(st.sampled_from((LOW, 0.0)) | metres(0.0, 2.0))
-    high = round(low + draw(metres(0.5, 5.0) | metres(5.0, 60.0)), 3)
+        low, high = draw(distances_between(0.1, 2.0)), draw(distances_between(3.0, 9.0))
+        return Readings((*draw(st.lists(distances_between(low, high), max_size=4)), low, high), low, high)
+    low = draw(st.sampled_from((LOW, 0.0)) | distances_between(0.0, 2.0))
+    high = round(low + draw(distances_between(0.5, 5.0) | distances_between(5.0, 60.0)), 3)
     near = [round(limit + step, 4) for limit in (low, high) for step in (-BEYOND_LIMIT, BEYOND_LIMIT)]
-    readings = st.sampled_from((*near, low - 1.0, high + 1.0)) | metres(low, high)
+    readings = st.sampled_from((*near, low - 1.0, high + 1.0)) | distances_between(low, high)
     return Readings(tuple(draw(st.lists(readings, min_size=1, max_size=8))), low, high)
 
 
 @st.composite
 def lists_with_a_mean(draw: st.DrawFn) -> list[float]:
     """Draw readings of which at least one is finite."""
-    number = metres(-5.0, 60.0) | st.sampled_from((0.0, 1.0, -1.0))
+    number = distances_between(-5.0, 60.0) | st.sampled_from((0.0, 1.0, -1.0))
     other = st.sampled_from((nan, inf, -inf))
     readings = draw(st.lists(number | other, max_size=12))
     readings.insert(draw(st.integers(0, len(readings))), draw(number))
     return readings
 
 
-# Scans whose beams all read the same distance; a scan whose distance is 0 m; and scans without a distance.
+# Scans whose beams all measure the same distance; a scan whose distance is 0 m; and scans without a distance.
 ONE_BEAM = GOOD.map(lambda reading: Readings((reading,)))
 GOOD_SCANS = st.builds(lambda reading, beams: Readings((reading,) * beams), GOOD, st.integers(1, 4))
 AT_ZERO = Readings((0.0,), low=-1.0)

@@ -1,4 +1,4 @@
-"""What a robust node said and logged at each reading of a run, and what it should have said."""
+"""Runs of a robust node: the status and the log lines of each reading, and the expected statuses."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ FLAKY_READINGS, REAL_FLAKY_READINGS = 60, 30  # readings of a flaky sensor, in l
 
 @dataclass(frozen=True)
 class Reading:
-    """One reading of the sensor: when its status came, in seconds, the status, and what was logged with it."""
+    """One reading of the sensor: the time of its status in seconds, the status, and the log lines."""
 
-    second: float
+    seconds: float
     status: str
     log: str
 
@@ -54,7 +54,7 @@ class SensorRun:
 
     @cached_property
     def expected(self) -> list[str]:
-        """The statuses that a right node publishes."""
+        """The statuses that a correct node publishes."""
         return expected_statuses(self.seed, self.probability, max(1, len(self.readings)), self.max_errors)
 
     @property
@@ -67,9 +67,9 @@ class SensorRun:
         """For each reading, how many in a row have failed."""
         return [int(re.sub(r"\D", "", status) or 0) for status in self.expected]
 
-    def first_wrong(self, is_right: Callable[[int], bool]) -> int | None:
-        """Return the number of the first reading, counted from 0, that is not right, or None."""
-        return next((number for number in range(len(self.readings)) if not is_right(number)), None)
+    def first_wrong(self, is_correct: Callable[[int], bool]) -> int | None:
+        """Return the number of the first reading, counted from 0, that is not correct, or None."""
+        return next((number for number in range(len(self.readings)) if not is_correct(number)), None)
 
 
 def dead_sensor(workspace: Workspace, draw: random.Random) -> SensorRun:

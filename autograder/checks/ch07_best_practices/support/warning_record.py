@@ -1,4 +1,4 @@
-"""Records when a sensor processor warns while scans come, and applies the contract's rules to this record."""
+"""Records when a sensor processor warns while it receives scans, and applies the contract's rules."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class WarningRecord:
     warnings: list[float] = field(default_factory=list)
     blind: list[tuple[float, float]] = field(default_factory=list)
     _was_blind: bool = False
-    _earlier: int = field(init=False)
+    _earlier_count: int = field(init=False)
 
     def __post_init__(self) -> None:
-        self._earlier = count_logged(self.processor.output, "WARN")
+        self._earlier_count = count_logged(self.processor.output, "WARN")
 
     @property
     def slack(self) -> float:
@@ -58,20 +58,20 @@ class WarningRecord:
         for earlier, later in itertools.pairwise(self.warnings):
             expect(
                 later - earlier >= WARN_PERIOD - self.slack,
-                f"While scans without a distance came, it warned twice within {later - earlier:.1f} s.",
+                f"It warned about scans without a distance twice within {later - earlier:.1f} s.",
                 fraction=0.5,
             )
 
     def expect_prompt(self) -> None:
-        """Fail the check if scans without a distance came for more than 1.5 s without a warning."""
+        """Fail the check if, for more than 1.5 s, scans had no distance and the processor did not warn."""
         for start, end in self.blind:
             times = [start, *(time for time in self.warnings if start <= time <= end), end]
-            wait = max(later - earlier for earlier, later in itertools.pairwise(times))
-            message = f"For {wait:.1f} s no scan had a distance, and it did not warn."
-            expect(wait <= MAX_SILENCE + self.slack, message, fraction=0.5)
+            silence = max(later - earlier for earlier, later in itertools.pairwise(times))
+            message = f"For {silence:.1f} s, no scan had a distance, and it did not warn."
+            expect(silence <= MAX_SILENCE + self.slack, message, fraction=0.5)
 
     def _run_and_record(self, seconds: float) -> None:
-        """Let the processor run, and note how often it warns meanwhile."""
+        """Let the processor run, and record its warnings."""
         self.processor.run(seconds)
-        count = count_logged(self.processor.output, "WARN") - self._earlier - len(self.warnings)
+        count = count_logged(self.processor.output, "WARN") - self._earlier_count - len(self.warnings)
         self.warnings += [self.processor.seconds] * count

@@ -18,13 +18,13 @@ from autograder.checks.ch07_best_practices.support.robot import (
     scan,
 )
 
-BLIND_SECONDS = 6  # s for which scans without a distance come
+BLIND_SECONDS = 6  # s during which no scan has a distance
 
 
 @check(points=1, covers=("mask", "places", "phantoms"), group="utils", doc=contract.REP_117)
 @hint(contract.RULE_PLACE, contract.RULE_MASK)
 def test_mask_invalid(workspace: Workspace) -> None:
-    """mask_invalid replaces what is no measurement by nan, and keeps every reading's place."""
+    """mask_invalid replaces each reading that is not a measurement with nan, and keeps every reading's place."""
     readings = [1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5]
     (outcome,) = calls.run_steps(workspace, contract.UTILS, calls.call("mask_invalid", readings, 0.12, 3.5))
     call_text = "mask_invalid([1.0, 0.0, inf, nan, 9.0, -inf, 0.12, 3.5], 0.12, 3.5)"
@@ -37,7 +37,7 @@ def test_mask_invalid(workspace: Workspace) -> None:
 @check(points=1, covers="mean", group="utils")
 @hint(contract.RULE_MEAN, "Without a finite reading there is no mean: return None, not 0.0.")
 def test_mean_distance(workspace: Workspace) -> None:
-    """mean_distance takes the mean of the finite readings, and says None when there is none."""
+    """mean_distance returns the mean of the finite readings, or None if there are none."""
     with_finite, without_finite = calls.run_steps(
         workspace, contract.UTILS, calls.call("mean_distance", [1.0, nan, 2.0, inf]), calls.call("mean_distance", [nan])
     )
@@ -54,12 +54,12 @@ def test_mean_distance(workspace: Workspace) -> None:
     after=("mask_invalid", "mean_distance"),
     doc=contract.DEQUE,
 )
-@hint("deque(maxlen=history) forgets the oldest by itself.", "average() is the mean of the means remembered.")
+@hint("deque(maxlen=history) forgets the oldest by itself.", "average() is the mean of the remembered means.")
 def test_data_processor(workspace: Workspace) -> None:
-    """DataProcessor remembers the means of the newest scans, no more than it was told to, and none of a blind scan."""
+    """DataProcessor remembers at most `history` means, those of the newest scans that have a finite distance."""
     steps = [
         calls.call("DataProcessor", 2),
-        *(calls.call("process", [metres, 0.0], 0.1, 9.0, on=0) for metres in (1.0, 2.0, 3.0, nan)),
+        *(calls.call("process", [distance, 0.0], 0.1, 9.0, on=0) for distance in (1.0, 2.0, 3.0, nan)),
     ]
     _, first, *_, outcome = calls.run_steps(workspace, contract.UTILS, *steps, calls.call("average", on=0))
     average = calls.value(outcome, "average()")
@@ -72,59 +72,60 @@ def test_data_processor(workspace: Workspace) -> None:
 @hint("msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max), then publish msg.")
 @hint("Both ends of scan and scan_filtered use qos_profile_sensor_data.")
 def test_filters_scans(processor: Processor) -> None:
-    """sensor_processor publishes a scan again: masked by its own limits, everything else as it came."""
+    """sensor_processor publishes each scan masked by its own limits, with everything else unchanged."""
     sent_scan = scan([8.0, 0.0, 2.0], range_min=0.5, range_max=8.0)
     sent_scan.intensities = [4.0, 0.0, 2.0]
     filtered, _ = processor.send_scans(sent_scan)
-    expect(len(filtered) == 1, f"One scan went in, {len(filtered)} came out on scan_filtered.")
+    expect(len(filtered) == 1, f"One scan was sent, and {len(filtered)} published on scan_filtered.")
     ranges = list(filtered[0].ranges)
-    is_right = len(ranges) == 3 and isnan(ranges[1]) and ranges[::2] == [8.0, 2.0]
-    expect(
-        is_right, f"[8.0, 0.0, 2.0] with limits 0.5 and 8.0 went in, {ranges} came out: [8.0, nan, 2.0] was expected."
-    )
+    is_correct = len(ranges) == 3 and isnan(ranges[1]) and ranges[::2] == [8.0, 2.0]
+    message = f"With the limits 0.5 and 8.0, [8.0, 0.0, 2.0] was published as {ranges} instead of [8.0, nan, 2.0]."
+    expect(is_correct, message)
     intensities = list(filtered[0].intensities)
-    expect(intensities == [4.0, 0.0, 2.0], f"intensities went in as [4.0, 0.0, 2.0] and came out as {intensities}.")
+    expect(intensities == [4.0, 0.0, 2.0], f"intensities were [4.0, 0.0, 2.0], and were published as {intensities}.")
 
 
 @check(points=1, covers=("scan", "scan-filtered"), group="processor", after=("filters_scans",), doc=contract.QOS)
 @hint("qos_profile_sensor_data for scan and for scan_filtered, 10 for mean_distance; no name begins with a slash.")
 def test_sensor_profile(processor: Processor) -> None:
-    """It takes scan and offers scan_filtered best effort, as a lidar does."""
+    """sensor_processor subscribes to scan and publishes scan_filtered best effort, as a lidar does."""
     endpoints = {
         "scan": processor.node.get_subscriptions_info_by_topic("/scan"),
         "scan_filtered": processor.node.get_publishers_info_by_topic("/scan_filtered"),
     }
     for topic, infos in endpoints.items():
-        expect(bool(infos), f"It has no {topic}.")
+        expect(bool(infos), f"The node does not use the topic {topic}.")
         is_reliable = any(endpoint.qos_profile.reliability == ReliabilityPolicy.RELIABLE for endpoint in infos)
-        expect(not is_reliable, f"{topic} is reliable.")
+        expect(not is_reliable, f"{topic} is reliable instead of best effort.")
 
 
 @check(points=1, covers=("mean-of-ten", "blind", "warns"), group="processor", after=("data_processor", "filters_scans"))
-@hint("One DataProcessor(HISTORY), made in __init__; after each scan publish its average().")
+@hint("Create one DataProcessor(HISTORY) in __init__. After each scan, publish its average().")
 @hint("mean_distance(masked) is None: warn, with throttle_duration_sec, and publish no mean.")
 def test_means(fresh_processor: Processor) -> None:
-    """mean_distance is the average over the newest ten scans; scans without a distance bring a warning and no mean."""
-    _, means = fresh_processor.send_scans(*(scan([metres]) for metres in (2.0, *[1.0] * 10)))
-    expect(len(means) == 11, f"11 scans went in, {len(means)} means came out.")
+    """mean_distance averages over the newest ten scans. A scan without a distance gets a warning and no mean."""
+    _, means = fresh_processor.send_scans(*(scan([distance]) for distance in (2.0, *[1.0] * 10)))
+    expect(len(means) == 11, f"11 scans were sent, and {len(means)} means published.")
     newest = [round(means[i], 3) for i in (0, 1, -1)]
-    expect(newest == [2.0, 1.5, 1.0], f"After 1, 2 and 11 scans the mean was {newest} instead of [2.0, 1.5, 1.0].")
+    expect(newest == [2.0, 1.5, 1.0], f"After 1, 2 and 11 scans, the means were {newest} instead of [2.0, 1.5, 1.0].")
     _, means = fresh_processor.send_scans(*(scan([nan]) for _ in range(BLIND_SECONDS * 10)))
-    expect(not means, f"Scans without a distance brought {len(means)} means.")
+    expect(not means, f"For scans without a distance, it published {len(means)} means.")
     warnings = count_logged(fresh_processor.output, "WARN")
-    message = f"Scans without a distance for {BLIND_SECONDS} s brought {warnings} warnings instead of one a second."
+    message = (
+        f"For {BLIND_SECONDS} s, no scan had a distance, and it logged {warnings} warnings instead of one a second."
+    )
     expect(int(BLIND_SECONDS / contract.MAX_SILENCE) <= warnings <= BLIND_SECONDS + 2, message)
 
 
 @check(points=1, covers=("failed", "once-a-second"), group="robust", doc=contract.ERRORS)
-@hint(contract.RULE_STATUS, "One call of read_sensor(self.generator, self.failure_probability) a period.")
-@hint("read_sensor asks the generator that it is given: generator.random(). random.random() asks another one.")
+@hint(contract.RULE_STATUS, "Call read_sensor(self.generator, self.failure_probability) once a period.")
+@hint("read_sensor uses the generator that it is given: generator.random(). random.random() uses another one.")
 def test_counts_failures(workspace: Workspace) -> None:
-    """robust_node says each second how its reading went, and counts failures in a row."""
+    """robust_node publishes a status once a second, and counts failures in a row."""
     with Robust(workspace, seed=7, failure_probability=0.5) as harness:
         statuses = harness.receive(8)
     correct = expected_statuses(7, 0.5, 8)
-    expect(statuses == correct, f"With seed 7 it said {statuses}, and should have said {correct}.")
+    expect(statuses == correct, f"With seed 7, it published {statuses} instead of {correct}.")
 
 
 @check(
@@ -137,7 +138,7 @@ def test_counts_failures(workspace: Workspace) -> None:
 @hint("create_publisher(String, 'status', STATUS_QOS), not 10.")
 @hint("floating_point_range=[limits] in the descriptor; _declare_integer for the two whole numbers.")
 def test_declares(workspace: Workspace) -> None:
-    """robust_node offers status transient local, and its three parameters have ranges."""
+    """robust_node publishes status transient local, and its three parameters have ranges."""
     with Robust(workspace) as harness:
         publishers = harness.node.get_publishers_info_by_topic(STATUS)
         descriptors = parameters.NodeParameters(harness, "/robust_node").descriptors(
@@ -146,9 +147,9 @@ def test_declares(workspace: Workspace) -> None:
     are_durable = [publisher.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for publisher in publishers]
     expect(
         bool(are_durable) and all(are_durable),
-        "status is not transient local: a node that joins late would hear nothing.",
+        "status is not transient local: a node that joins late would receive nothing.",
     )
-    expect(len(descriptors) == 3, f"Of its three parameters it declares {', '.join(descriptors) or 'none'}.")
+    expect(len(descriptors) == 3, f"Of its three parameters, it declares {', '.join(descriptors) or 'none'}.")
     without_range = [
         name
         for name, descriptor in descriptors.items()
@@ -164,34 +165,36 @@ def test_declares(workspace: Workspace) -> None:
     after=("counts_failures",),
     doc=contract.LOGGING,
 )
-@hint("unstable begins when the count is above max_errors; fatal is logged when it is max_errors + 1.")
+@hint("The status is unstable if the count is above max_errors. Log fatal if it is exactly max_errors + 1.")
 @hint("error(..., throttle_duration_sec=5.0)")
 def test_dead_sensor(workspace: Workspace) -> None:
-    """With max_errors 6 and a dead sensor it is unstable from the seventh failure on, fatal once, errors throttled."""
+    """With max_errors 6, a dead sensor makes robust_node unstable at failure 7: one fatal log, and throttled errors."""
     with Robust(workspace, failure_probability=1.0, max_errors=6) as harness:
         statuses = harness.receive(12)
         fatals, errors = count_logged(harness.output, "FATAL"), count_logged(harness.output, "ERROR")
     correct = [f"{'failed' if n <= 6 else 'unstable'}: {n} in a row" for n in range(1, 13)]
-    expect(statuses == correct, f"It said {statuses}.")
+    expect(statuses == correct, f"It published {statuses} instead of {correct}.")
     expect(fatals == 1, f"It logged {fatals} fatal messages instead of one.")
-    expect(0 < errors <= 4, f"In 12 s it logged {errors} errors instead of one in 5 s.")
+    expect(0 < errors <= 4, f"In 12 s, it logged {errors} errors instead of one in 5 s.")
 
 
 @check(points=1, covers="recovery-log", group="robust", after=("counts_failures",), doc=contract.LOGGING)
 @hint("Log 'Recovered after N errors' before you set the count back to 0.")
 def test_recovers(workspace: Workspace) -> None:
-    """It logs each recovery, with the number of failures before it."""
+    """robust_node logs each recovery, with the number of errors before it."""
     with Robust(workspace, seed=7, failure_probability=0.5) as harness:
         harness.receive(5)
         lines = [line for line in harness.output.splitlines() if "Recovered after " in line]
-    expect(len(lines) == 2, f"With seed 7 it recovers twice in 5 s, and it logged {len(lines)} recoveries.")
-    expect(lines[0].endswith("Recovered after 2 errors"), f"The first recovery comes after 2 failures: {lines[0]}")
+    expect(len(lines) == 2, f"With seed 7, it logged {len(lines)} recoveries in 5 s instead of 2.")
+    expect(
+        lines[0].endswith("Recovered after 2 errors"), f"The first recovery, after 2 errors, was logged as: {lines[0]}"
+    )
 
 
 @check(points=1, covers=("catch", "generator"), group="robust", after=("counts_failures",), doc=contract.ERRORS)
-@hint("except SensorError as error: nothing wider. The generator that is handed in is the one that is used.")
+@hint("Catch SensorError and nothing wider. Use the generator that is passed in.")
 def test_shows_bugs(workspace: Workspace) -> None:
-    """It does not catch a bug: with range(3) for a generator, timer_callback raises AttributeError."""
+    """robust_node does not catch a bug: with range(3) as its generator, timer_callback raises AttributeError."""
     *_, result = calls.run_steps(
         workspace,
         contract.ROBUST,
@@ -201,4 +204,4 @@ def test_shows_bugs(workspace: Workspace) -> None:
         calls.call("timer_callback", on=2),
         network=True,
     )
-    expect("AttributeError" in result.kinds, f"It raised {result.raised or 'nothing'}.")
+    expect("AttributeError" in result.kinds, f"It raised {result.raised or 'nothing'} instead of AttributeError.")

@@ -31,7 +31,8 @@ CHOICES = [
 
 
 @check_each_row(group("choices"), CHOICES)
-def letter_is_right(choice: Choice, workspace: Workspace) -> None:
-    """Fail the check unless the given letter is the right one."""
+def expect_correct_letter(choice: Choice, workspace: Workspace) -> None:
+    """Fail the check unless the given letter is the correct one."""
     letter = expect_letter(answers(workspace), choice.id)
-    expect(letter == choice.question.right, f"You chose {letter}. {choice.question.wrong.get(letter, '')}")
+    explanation = choice.question.explanations.get(letter, "")
+    expect(letter == choice.question.correct_letter, f"You chose {letter}. {explanation}")

@@ -1,4 +1,4 @@
-"""Temperatures drawn from all that the contract allows; oracles say what the nodes should make of them."""
+"""Temperatures drawn from all that the contract allows, and checks of how the nodes react to them."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def series(*edges: float, low: float = 20.0, high: float = 80.0) -> Temperatures
     return st.lists(st.sampled_from((*edges, low, high)) | tenths, min_size=3, max_size=LENGTH)
 
 
-def switched(*edges: float, hot: float = HOT, cool: float = COOL) -> Temperatures:
-    """Draw temperatures around two thresholds, in any order. The first one sets the fan, whatever came before."""
+def around_thresholds(*edges: float, hot: float = HOT, cool: float = COOL) -> Temperatures:
+    """Draw temperatures around two thresholds, in any order. The first one sets the fan, whatever its state was."""
     between = st.floats(cool + 1.0, hot - 1.0).map(lambda celsius: round(celsius, 2))
     decisive = (cool - 5.0, hot + 5.0)
     rest = st.lists(between, min_size=2, max_size=2).flatmap(lambda drawn: st.permutations([*edges, *decisive, *drawn]))
@@ -41,15 +41,17 @@ def expect_series(
 ) -> None:
     """Fail the check unless a smoother averages each of these series; append them to the earlier `readings`."""
 
-    def judge(new: list[float]) -> None:
-        before = [celsius for celsius in readings if math.isfinite(celsius)][-window:]
-        readings.extend(new)
-        expected = windows([*before, *new], window)[len(before) :]
-        actual = [message.celsius for message in harness.send(new, apart=_seconds_apart(harness))]
-        are_right = len(actual) == len(expected) and all(map(_is_mean, actual, expected))
-        observation = f"With the window {window}, and the newest readings {before}, {new} °C became {_rounded(actual)}"
-        message = f"{observation}, and should become {_rounded(map(fmean, expected))}."
-        expect(are_right, message, fraction=fraction)
+    def judge(new_readings: list[float]) -> None:
+        earlier = [celsius for celsius in readings if math.isfinite(celsius)][-window:]
+        readings.extend(new_readings)
+        expected = windows([*earlier, *new_readings], window)[len(earlier) :]
+        actual = [message.celsius for message in harness.send(new_readings, apart=_seconds_apart(harness))]
+        are_correct = len(actual) == len(expected) and all(map(_is_mean, actual, expected))
+        situation = f"With the window {window} and the earlier readings {earlier}"
+        message = (
+            f"{situation}, {new_readings} °C became {_rounded(actual)} instead of {_rounded(map(fmean, expected))}."
+        )
+        expect(are_correct, message, fraction=fraction)
 
     expect_each(drawn, judge, draw, count=_series_count(harness))
 
@@ -64,10 +66,12 @@ def expect_switching(
     hot: float = HOT,
     cool: float = COOL,
 ) -> None:
-    """Fail the check unless a guard makes the right decisions on each of these series."""
+    """Fail the check unless a guard makes the correct decisions on each of these series."""
 
-    def judge(new: list[float]) -> None:
-        expect_decisions(harness, new, prefix, hot=hot, cool=cool, fraction=fraction, apart=_seconds_apart(harness))
+    def judge(temperatures: list[float]) -> None:
+        expect_decisions(
+            harness, temperatures, prefix, hot=hot, cool=cool, fraction=fraction, apart=_seconds_apart(harness)
+        )
 
     expect_each(drawn, judge, draw, count=_series_count(harness))
 

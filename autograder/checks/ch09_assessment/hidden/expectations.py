@@ -38,7 +38,7 @@ def expect_measured(start: Start, period: float, mean: float, swing: float, read
         try:
             harness.expect_readings(READING_COUNT, period, mean, swing, reading=reading)
         except CheckFailed as error:
-            raise CheckFailed(f"With other parameters set after the start: {error.message}", fraction=0.5) from error
+            raise CheckFailed(f"After other parameters were set: {error.message}", fraction=0.5) from error
 
 
 def student_reading(start: Start) -> Callable[[int, float, float], float]:
@@ -61,8 +61,8 @@ def expect_fresh_readings(harness: NodeHarness) -> list[ReceivedMessage]:
         for arrival, stamp in zip(arrivals, stamps, strict=True)
     ]
     are_fresh = bool(ages) and all(abs(age) < MAX_AGE for age in ages)
-    observation = f"By their stamps, its readings were {ages} s old when they came"
-    expect(are_fresh, f"{observation}: a reading is sent as it is made, and the node's clock says when.")
+    observation = f"By their stamps, its readings were {ages} s old when they arrived"
+    expect(are_fresh, f"{observation}: publish each reading immediately, with the time of the node's clock.")
     return readings
 
 
@@ -70,28 +70,28 @@ def expect_averages(
     actual: list[float], readings: list[float], window: int, prefix: str = "", *, fraction: float = 0.0
 ) -> None:
     """Fail the check unless these are the averages of the readings."""
-    count = f"{prefix}{len(readings)} readings became {len(actual)} averages."
+    count = f"{prefix}{len(readings)} readings led to {len(actual)} averages."
     expect(len(actual) == len(readings), count, fraction=fraction)
     expected = averages(readings, window)
-    wrong = next((i for i in range(len(readings)) if not near(actual[i], expected[i])), 0)
-    newest = ", ".join(map(str, readings[: wrong + 1][-window:]))
-    is_right = near(actual[wrong], expected[wrong])
-    message = f"With the window {window}, the average of {newest} °C was {actual[wrong]:.2f} °C."
-    expect(is_right, f"{prefix}{message}", fraction=fraction)
+    index = next((i for i in range(len(readings)) if not near(actual[i], expected[i])), 0)
+    newest = ", ".join(map(str, readings[: index + 1][-window:]))
+    is_correct = near(actual[index], expected[index])
+    message = f"With the window {window}, the average of {newest} °C was {actual[index]:.2f} °C."
+    expect(is_correct, f"{prefix}{message}", fraction=fraction)
 
 
 def expect_full_averages(
     actual: list[float], readings: list[float], window: int, prefix: str = "", *, fraction: float = 0.0
 ) -> None:
-    """Fail the check unless the averages of full windows are right. Another check tests the averages before them."""
+    """Fail the check unless the averages of full windows are correct. Another check tests the averages before them."""
     expected = averages(readings, window)[window - 1 :]
     newest = actual[-len(expected) :]
-    count = f"{prefix}{len(readings)} readings became {len(actual)} averages."
+    count = f"{prefix}{len(readings)} readings led to {len(actual)} averages."
     expect(len(newest) == len(expected) and len(actual) <= len(readings), count, fraction=fraction)
-    wrong = next((i for i in range(len(expected)) if not near(newest[i], expected[i])), None)
-    numbers = ", ".join(map(str, readings[wrong : wrong + window])) if wrong is not None else ""
-    message = f"With the window {window}, the average of {numbers} °C was {newest[wrong or 0]:.2f} °C."
-    expect(wrong is None, f"{prefix}{message}", fraction=fraction)
+    index = next((i for i in range(len(expected)) if not near(newest[i], expected[i])), None)
+    numbers = ", ".join(map(str, readings[index : index + window])) if index is not None else ""
+    message = f"With the window {window}, the average of {numbers} °C was {newest[index or 0]:.2f} °C."
+    expect(index is None, f"{prefix}{message}", fraction=fraction)
 
 
 def expect_decisions(
@@ -104,15 +104,15 @@ def expect_decisions(
     fraction: float = 0.0,
     apart: float = MESSAGE_SECONDS,
 ) -> None:
-    """Fail the check unless the guard makes the right decisions on these temperatures, sent `apart` s apart."""
+    """Fail the check unless the guard makes the correct decisions on these temperatures, sent `apart` s apart."""
     actual = [bool(message.cooling) for message in harness.send(temperatures, apart=apart)]
-    count = f"{len(temperatures)} averages became {len(actual)} decisions."
+    count = f"{len(temperatures)} averages led to {len(actual)} decisions."
     expect(len(actual) == len(temperatures), count, fraction=fraction)
     allowed_states = decisions(temperatures, hot, cool)
     numbers = ", ".join(f"{celsius:g}" for celsius in temperatures)
-    wrong = next((i for i, decision in enumerate(actual) if decision not in allowed_states[i]), None)
-    message = f"{prefix}at {numbers} °C, cooling was {actual}; decision number {(wrong or 0) + 1} is wrong."
-    expect(wrong is None, message[:1].upper() + message[1:], fraction=fraction)
+    index = next((i for i, decision in enumerate(actual) if decision not in allowed_states[i]), None)
+    message = f"{prefix}at {numbers} °C, cooling was {actual}. Decision {(index or 0) + 1} is wrong."
+    expect(index is None, message[:1].upper() + message[1:], fraction=fraction)
 
 
 def expect_passed_on(
@@ -122,17 +122,19 @@ def expect_passed_on(
 
     The averages' stamps start with `stamp`, in s and ns, and are a second apart.
     """
-    expect(len(decisions) == len(temperatures), f"{len(temperatures)} averages became {len(decisions)} decisions.")
+    expect(len(decisions) == len(temperatures), f"{len(temperatures)} averages led to {len(decisions)} decisions.")
     first, nanoseconds = stamp
     for second, (celsius, decision) in enumerate(zip(temperatures, decisions, strict=True), first):
         actual = decision.stamp
-        is_right = (actual.sec, actual.nanosec) == (second, nanoseconds)
-        observation = f"The decision's stamp is {actual.sec} s and {actual.nanosec} ns"
-        expectation = f"the average's, at {celsius:.1f} °C, was {second} s and {nanoseconds} ns."
-        is_partly_right = second > first or actual.sec == second
-        expect(is_right, f"{observation}; {expectation}", fraction=0.5 if is_partly_right else fraction)
+        is_correct = (actual.sec, actual.nanosec) == (second, nanoseconds)
+        observation = f"The stamp of a decision is {actual.sec} s and {actual.nanosec} ns"
+        expectation = f"The stamp of its average, {celsius:.1f} °C, was {second} s and {nanoseconds} ns."
+        is_partly_correct = second > first or actual.sec == second
+        expect(is_correct, f"{observation}. {expectation}", fraction=0.5 if is_partly_correct else fraction)
         is_same = math.isclose(decision.celsius, celsius, rel_tol=FLOAT32) or str(decision.celsius) == str(celsius)
-        expect(is_same, f"The decision on {celsius:.5f} °C says {decision.celsius:.5f} °C.", fraction=0.5)
+        expect(
+            is_same, f"The decision on {celsius:.5f} °C has the temperature {decision.celsius:.5f} °C.", fraction=0.5
+        )
 
 
 def expect_separate_windows(workspace: Workspace) -> None:
@@ -145,6 +147,6 @@ def expect_separate_windows(workspace: Workspace) -> None:
     if not all(len(averages_of_call) == 1 for averages_of_call in averages_of_calls):
         return  # the smoother does not publish in its callback, which is allowed
     actual = [float(average) for (average,) in averages_of_calls]
-    situation = "Of two smoothers in one process, one was sent readings of 20 °C and the other one of 40 °C"
-    is_right = all(map(near, actual, (20.0, 40.0, 20.0)))
-    expect(is_right, f"{situation}, and the other one said {actual[1]:.1f} °C: each averages its own.", fraction=0.5)
+    situation = "Two smoothers in one process received readings of 20 °C and of 40 °C."
+    message = f"{situation} The second one published {actual[1]:.1f} °C: each should average its own readings."
+    expect(all(map(near, actual, (20.0, 40.0, 20.0))), message, fraction=0.5)

@@ -83,20 +83,20 @@ def hot(seed: int) -> int:
     after=("installs",),
 )
 @hint("Node(package='motor_guard', executable='guard', name='guard', output='screen'), and two more.")
-@hint("ros2 topic echo /decision shows whether the three talk to each other.")
+@hint("ros2 topic echo /decision shows whether the three nodes exchange messages.")
 def test_launches(launched: SharedLaunches) -> None:
-    """The launch file is installed, starts the three nodes under their names, and decisions come out."""
+    """The installed launch file starts the three nodes under their names, and they publish decisions."""
     harness = launched.harness
     launch_probe.expect_nodes(harness, NODES)
     has_decision = harness.wait_for(lambda: bool(harness.messages("/decision")), FIRST_SECONDS)
-    expect(has_decision, f"All three run, and no decision came in {FIRST_SECONDS:.0f} s.", fraction=0.5)
+    expect(has_decision, f"All three nodes run, but published no decision in {FIRST_SECONDS:.0f} s.", fraction=0.5)
 
 
 @check(points=2, covers=("hot-argument", "hot-cool"), after=("launches",))
 @hint("DeclareLaunchArgument('hot', default_value='60.0')")
-@hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): else 55 becomes an integer.")
+@hint("ParameterValue(LaunchConfiguration('hot'), value_type=float): without it, 55 becomes an integer.")
 def test_argument(workspace: Workspace, launched: SharedLaunches, start: Start, hot: int, draw: Random) -> None:
-    """Its argument hot, by default 60.0, becomes the guard's parameter, always as a float."""
+    """The launch argument hot, by default 60.0, sets the guard's parameter hot, always as a float."""
     harness = launched.harness
     launch_probe.expect_parameters(harness, f"/{GUARD}", {"hot": float(hot)})
     reason = launch_probe.failure(launched.with_integer.output)
@@ -108,11 +108,9 @@ def test_argument(workspace: Workspace, launched: SharedLaunches, start: Start, 
         if parameters.differences(launched_values, values):  # other checks test the node's own defaults
             with start(name) as lone_harness:
                 own_values = parameters.NodeParameters(lone_harness, f"/{name}").values(*values)
-            others = parameters.differences(launched_values, own_values)
-            message = (
-                f"Launched with hot:={hot} and nothing else, {name} differs from {name} alone: {'; '.join(others)}."
-            )
-            expect(not others, message, fraction=0.75)
+            differences = parameters.differences(launched_values, own_values)
+            message = f"Launched with only hot:={hot}, {name} differs from {name} alone: {'; '.join(differences)}."
+            expect(not differences, message, fraction=0.75)
     fraction = hot + draw.randrange(100_001, 1_000_000, 2) / 1e6  # six decimal places, none of which may be lost
     with LaunchHarness(workspace, PACKAGE, LAUNCH_FILE, {"hot": str(fraction)}) as precise_launch:
         launch_probe.settle(precise_launch, NODES)
@@ -123,9 +121,9 @@ def test_argument(workspace: Workspace, launched: SharedLaunches, start: Start, 
 
 
 @check(points=1, covers="ctrl-c", after=("launches",))
-@hint("Each main() catches KeyboardInterrupt and ExternalShutdownException: running.py does it for you.")
-@hint("A node that never ends by itself has to be killed: look at loops of your own.")
+@hint("Each main() catches KeyboardInterrupt and ExternalShutdownException: running.py does this.")
+@hint("A node in an endless loop has to be killed: check the loops that you wrote.")
 def test_stops(launched: SharedLaunches) -> None:
     """Ctrl-C ends the launch and all of its nodes, cleanly."""
-    expect(bool(launched.harness.nodes()), "No node runs that Ctrl-C could end.")
+    expect(bool(launched.harness.nodes()), "No node is running, so Ctrl-C has nothing to end.")
     launch_probe.expect_clean_stop(launched.harness)

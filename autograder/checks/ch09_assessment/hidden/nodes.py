@@ -10,10 +10,10 @@ from autograder.checking import LOCKSTEP, CheckFailed, Workspace, expect, group,
 from autograder.checking.probes import namespaces
 from autograder.checks.ch09_assessment.hidden.drawn_temperatures import (
     UNKNOWN,
+    around_thresholds,
     expect_series,
     expect_switching,
     series,
-    switched,
 )
 from autograder.checks.ch09_assessment.hidden.expectations import (
     expect_averages,
@@ -56,9 +56,9 @@ SLOW = 0.25  # s that the machine's clocks count in a second of ROS time
     after=BUILD_CHECKS,
     doc=contract.NODES_DOC,
 )
-@hint("create_timer(period, self.timer_callback), and a count in self.", "math.sin takes radians.")
+@hint("create_timer(period, self.timer_callback), and a counter in self.", "math.sin takes radians.")
 def test_readings(start: Start) -> None:
-    """Thermometer publishes two readings a second, which swing around the mean as the contract says."""
+    """Thermometer publishes two readings a second, and they follow the formula of the contract."""
     with start(THERMOMETER) as harness:
         harness.expect_in_graph()
         harness.expect_readings(30)
@@ -67,7 +67,7 @@ def test_readings(start: Start) -> None:
 @check(points=2, covers=("period", "mean-swing", "at-start"), after=("readings",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('mean', 50.0).value, and use it.", "create_timer takes the parameter period.")
 def test_thermometer_parameters(start: Start, draw: Random) -> None:
-    """Thermometer measures by its parameters period, mean and swing."""
+    """Thermometer uses its parameters period, mean and swing."""
     period, mean, swing = draw_wave(draw)
     try:
         expect_measured(start, period, mean, swing, reading)
@@ -76,10 +76,10 @@ def test_thermometer_parameters(start: Start, draw: Random) -> None:
 
 
 @check(points=1, covers=("reading", "formula"), after=("readings",), doc=contract.NODES_DOC)
-@hint("stamp=self.get_clock().now().to_msg()", "time.time() knows nothing of ROS time.")
-@hint("The timer starts in __init__, and its callback does not ask who listens.")
+@hint("stamp=self.get_clock().now().to_msg()", "time.time() does not return ROS time.")
+@hint("Create the timer in __init__. Its callback should not check for subscribers.")
 def test_stamps(start: Start) -> None:
-    """Each reading is made in its period, whoever listens, and stamped with the node's clock at that time."""
+    """Thermometer publishes each period, even without subscribers, and stamps readings with the node's clock."""
     with start(THERMOMETER) as harness:
         readings = expect_fresh_readings(harness)
         harness.run(UNSUBSCRIBED_SECONDS)
@@ -88,7 +88,9 @@ def test_stamps(start: Start) -> None:
     period = readings[1].seconds - readings[0].seconds if len(readings) > 1 else PERIOD
     if in_lockstep:
         first = readings[0].seconds
-        message = f"The first reading came {first:.2f} s after the start, and its period is {period:.2f} s."
+        message = (
+            f"The first reading was published {first:.2f} s after the start instead of {period:.2f} s, the period."
+        )
         expect(abs(first - period) < period / 2, message, fraction=0.5)
     with start(THERMOMETER, clock_rate=SLOW, is_subscribed=False) as harness:
         harness.run(UNSUBSCRIBED_SECONDS)
@@ -98,15 +100,17 @@ def test_stamps(start: Start) -> None:
         number, celsius = round(received.seconds / period) - 1, received.message.celsius
         expected = expected_readings[number] if number < len(expected_readings) else celsius
         observation = (
-            f"Nobody listened for {UNSUBSCRIBED_SECONDS} s; "
+            f"After {UNSUBSCRIBED_SECONDS} s without subscribers, "
             f"the reading {received.seconds:.2f} s after the start was {celsius:.2f} °C"
         )
-        expectation = f"where somebody listens, it was {expected:.2f} °C: it measures each period, whoever listens."
-        expect(near(celsius, expected), f"{observation}; {expectation}", fraction=0.5)
+        expectation = (
+            f"With a subscriber from the start, it was {expected:.2f} °C: subscribers must not change the readings."
+        )
+        expect(near(celsius, expected), f"{observation}. {expectation}", fraction=0.5)
 
 
 @check(points=2, covers=("smoother", "window", "smoother-topics"), after=BUILD_CHECKS, doc=contract.NODES_DOC)
-@hint("sum(...) / len(...) of what the window holds now; at the start that is less.", "Publish for each reading.")
+@hint("sum(...) / len(...) of the readings in the window. At the start, it holds fewer.", "Publish for each reading.")
 def test_average(workspace: Workspace, start: Start, draw: Random) -> None:
     """Smoother publishes, for each reading, the average of the newest five, with the stamp of the newest."""
     readings = [round(draw.uniform(20.0, 80.0), 1) for _ in range(12)]
@@ -115,11 +119,11 @@ def test_average(workspace: Workspace, start: Start, draw: Random) -> None:
         averages = harness.send(readings, first=7)
         expect_averages([message.celsius for message in averages], readings, WINDOW)
         stamps = [(message.stamp.sec, message.stamp.nanosec) for message in averages]
-        are_right = stamps == [(second, NANOSECONDS) for second in range(7, 7 + len(readings))]
-        expect(are_right, "The stamp of an average is not that of the newest reading.", fraction=0.66)
+        are_correct = stamps == [(second, NANOSECONDS) for second in range(7, 7 + len(readings))]
+        expect(are_correct, "The stamp of an average is not that of the newest reading.", fraction=0.66)
         expect_series(harness, series(), WINDOW, draw, readings, fraction=0.5)
         count = len(harness.send([readings[0]] * QUEUE, apart=0.0))
-    message = f"Of {QUEUE} readings that came at once, {count} got an average: a queue of {QUEUE} holds them all."
+    message = f"Of {QUEUE} readings that arrived at once, {count} got an average: a queue of {QUEUE} holds them all."
     expect(count == QUEUE, message, fraction=0.75)
     expect_separate_windows(workspace)
 
@@ -127,7 +131,7 @@ def test_average(workspace: Workspace, start: Start, draw: Random) -> None:
 @check(points=2, covers=("smoother", "window", "at-start"), after=("average",), doc=contract.PARAMETERS_DOC)
 @hint("deque(maxlen=window)", "IntegerRange(from_value=1, to_value=100) in the descriptor.")
 def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
-    """The parameter window says how many readings count, from 1 to 100; 0, 101 and 2.5 are refused at the start."""
+    """The parameter window sets how many readings count. Smoother refuses to start with 0, 101 or 2.5."""
     window, readings = draw.randint(2, 4), [round(draw.uniform(20.0, 80.0), 1) for _ in range(8)]
     with start(SMOOTHER, window=window) as harness:
         averages = harness.send(readings)
@@ -136,9 +140,9 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
         averages += harness.send(readings)
         prefix = "After another window was set: "
         expect_full_averages([message.celsius for message in averages], readings * 2, window, prefix, fraction=0.5)
-    for limit, is_valid in ((0, False), (1, True), (100, True), (101, False), (2.5, False)):
-        has_started = not refuses(workspace, types, SMOOTHER, window=limit)
-        message = f"smoother {'started' if has_started else 'did not start'} with window {limit}."
+    for value, is_valid in ((0, False), (1, True), (100, True), (101, False), (2.5, False)):
+        has_started = not refuses(workspace, types, SMOOTHER, window=value)
+        message = f"smoother {'started' if has_started else 'did not start'} with window {value}."
         expect(has_started is is_valid, message, fraction=0.5)
     with start(SMOOTHER, window=1) as harness:
         expect_series(harness, series(0.0, low=-80.0), 1, draw, [], fraction=0.75)
@@ -147,23 +151,23 @@ def test_window(workspace: Workspace, types: Types, start: Start, draw: Random) 
 @check(points=2, covers=("not-finite", "window"), after=("average",))
 @hint("math.isfinite(reading.celsius)", "A reading that does not count gets no average either.")
 def test_no_number(start: Start, draw: Random) -> None:
-    """A reading that is nan or infinite does not count, and nothing is published for it."""
+    """Smoother ignores a reading that is nan or infinite, and publishes nothing for it."""
     first, second = round(draw.uniform(30.0, 40.0), 1), round(draw.uniform(50.0, 60.0), 1)
     with start(SMOOTHER, window=2) as harness:  # an ignored reading takes no place in the window
         averages = harness.send([first, *UNKNOWN, second])
         actual = [round(message.celsius, 2) for message in averages]
         observation = f"{first}, nan, inf, -inf, {second} °C became {actual}"
         expected = (first + second) / 2
-        is_last_right = bool(actual) and abs(actual[-1] - expected) <= 0.01
-        expect(is_last_right, f"{observation}: the last average should have been {expected:.2f}.")
-        expect(len(actual) <= 2, f"{observation}: there are averages for what is no number.", fraction=0.5)
+        is_last_correct = bool(actual) and abs(actual[-1] - expected) <= 0.01
+        expect(is_last_correct, f"{observation}: the last average should have been {expected:.2f}.")
+        expect(len(actual) <= 2, f"{observation}: there are averages for readings that are not finite.", fraction=0.5)
         readings = [first, second]
         expect_series(harness, series(*UNKNOWN), 2, draw, readings, fraction=0.5)
         expect_series(harness, series(HUGE, -HUGE), 2, draw, readings, fraction=0.75)
 
 
 @check(points=4, covers=("hysteresis", "guard-topics"), after=BUILD_CHECKS, doc=contract.NODES_DOC)
-@hint("Two thresholds, and a decision that is remembered.", "elif: from hot on True, down to cool False.")
+@hint("Two thresholds, and a decision that is remembered.", "True at hot or more; elif at cool or less, False.")
 def test_hysteresis(start: Start, draw: Random) -> None:
     """Guard switches the fan on when it is hot, off when it is cool, and leaves it as it was between the two."""
     between, cold, warm = (round(draw.uniform(*limits), 1) for limits in (BETWEEN, (10.0, 40.0), (70.0, 90.0)))
@@ -173,80 +177,82 @@ def test_hysteresis(start: Start, draw: Random) -> None:
         expect_decisions(harness, [cold, warm, cold], "")
         expect_decisions(harness, [warm, between, cold, between], "Between the thresholds: ", fraction=0.5)
         expect_decisions(harness, [HOT, COOL, HOT - 0.1, HOT, COOL + 0.1], "At the thresholds: ", fraction=0.75)
-        edges = switched(HOT, COOL, HOT - 0.1, COOL + 0.1)
+        edges = around_thresholds(HOT, COOL, HOT - 0.1, COOL + 0.1)
         expect_switching(harness, edges, draw, "At the thresholds: ", fraction=0.75)
         expect(
             first_decisions == [False],
-            f"At first, at {between} °C, cooling was {first_decisions}: the fan is off.",
+            f"At first, at {between} °C, cooling was {first_decisions} instead of [False]: the fan is off.",
             fraction=0.75,
         )
 
 
 @check(points=2, covers=("hot-cool", "hysteresis", "at-start"), after=("hysteresis",), doc=contract.PARAMETERS_DOC)
 @hint("self.declare_parameter('hot', 60.0).value, and cool likewise.", "raise ValueError(...) in __init__.")
-@hint("self.hot = ... in __init__ is read once; get_parameter in a callback is not.")
+@hint("Read the parameters once, in __init__, and not in a callback.")
 def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Random) -> None:
-    """Guard decides by hot and cool as they were at its start, which fails unless cool is less than hot."""
+    """Guard uses the values of hot and cool at its start, and refuses to start unless cool is less than hot."""
     hot, cool = draw_thresholds(draw)
     with start(GUARD, hot=hot, cool=cool) as harness:
         prefix = f"With hot {hot} and cool {cool}: "
         expect_decisions(harness, [cool - 1.0, hot + 1.0, cool - 1.0], prefix, hot=hot, cool=cool)
         between = [cool + 1.0, hot + 1.0, cool + 1.0, cool - 1.0, hot - 1.0]
         expect_decisions(harness, between, prefix, hot=hot, cool=cool, fraction=0.5)
-        edges = switched(hot - MARGIN, cool + MARGIN, hot=hot, cool=cool)
+        edges = around_thresholds(hot - MARGIN, cool + MARGIN, hot=hot, cool=cool)
         expect_switching(harness, edges, draw, prefix, fraction=0.75, hot=hot, cool=cool)
         expect_decisions(harness, [cool - 1.0], prefix, hot=hot, cool=cool, fraction=0.75)
         harness.run(SILENCE)
         silence_prefix = f"{prefix}after {SILENCE} s without an average, "
         expect_decisions(harness, [cool + 1.0], silence_prefix, hot=hot, cool=cool, fraction=0.75)
         harness.try_to_set(hot=hot + 5.0, cool=cool - 5.0)
-        prefix = f"Started with hot {hot} and cool {cool}, both then set 5 °C further apart: "
+        prefix = f"Started with hot {hot} and cool {cool}, which were then set 5 °C further apart: "
         expect_decisions(harness, [hot + 1.0, cool - 1.0], prefix, hot=hot, cool=cool, fraction=0.5)
     unusual_thresholds: dict[str, float] = draw.choice(({"hot": 0.0, "cool": -20.0}, {"hot": 20.0, "cool": 0.0}))
     with start(GUARD, **unusual_thresholds) as harness:
-        both_ways = [
+        temperatures = [
             unusual_thresholds["hot"] + 1.0,
             unusual_thresholds["cool"] + 1.0,
             unusual_thresholds["cool"] - 1.0,
             unusual_thresholds["hot"] - 1.0,
         ]
         expect_decisions(
-            harness, both_ways, f"With {_values_text(unusual_thresholds)}: ", fraction=0.75, **unusual_thresholds
+            harness, temperatures, f"With {_values_text(unusual_thresholds)}: ", fraction=0.75, **unusual_thresholds
         )
-    for wrong in (
+    for invalid_values in (
         {"hot": hot, "cool": hot},
         {"hot": COOL - MARGIN},
         {"cool": HOT + 5.0},
         {"cool": math.nan},
         {"hot": math.nan},
     ):
-        is_refused = refuses(workspace, types, GUARD, **wrong)
-        expect(is_refused, f"guard started with {_values_text(wrong)}.", fraction=0.5)
+        is_refused = refuses(workspace, types, GUARD, **invalid_values)
+        expect(is_refused, f"guard started with {_values_text(invalid_values)}.", fraction=0.5)
 
 
 @check(points=1, covers="unknown", after=("hysteresis",))
-@hint("nan >= 60.0 is False, and so is nan <= 50.0.", "Ask math.isfinite first.")
+@hint("nan >= 60.0 is False, and so is nan <= 50.0.", "Check math.isfinite first.")
 def test_unknown(start: Start, draw: Random) -> None:
-    """When the temperature is no finite number, it is not known, and the fan runs."""
+    """If the temperature is not a finite number, it is unknown, and the fan runs."""
     with start(GUARD) as harness:
         expect_decisions(harness, [20.0, math.nan, 20.0, 70.0, -math.inf, 20.0], "")
-        expect_switching(harness, switched(*UNKNOWN), draw, fraction=0.5)
+        expect_switching(harness, around_thresholds(*UNKNOWN), draw, fraction=0.5)
 
 
 @check(points=1, covers=("guard", "guard-topics"), after=("hysteresis",))
-@hint("stamp=average.stamp", "Who reads a decision wants to know of when and of what it was.")
+@hint("stamp=average.stamp", "A node that reads a decision needs to know its time and its temperature.")
 def test_passes_on(start: Start, draw: Random) -> None:
-    """Each average gets a decision, which carries the stamp and the temperature that it was made of."""
+    """Guard publishes a decision for each average, with the average's stamp and temperature."""
     temperatures = [draw.uniform(70.0, 90.0), draw.uniform(*BETWEEN), draw.uniform(20.0, 40.0)]
     first, nanoseconds = STAMP[0] + draw.randint(100, 999), STAMP[1]
     with start(GUARD) as harness:
         expect_passed_on(temperatures, harness.send(temperatures, first, nanoseconds=nanoseconds), (first, nanoseconds))
-        others = [*UNKNOWN, -temperatures[0], HUGE]
-        decisions = harness.send(others, first, nanoseconds=nanoseconds)
-        if len(decisions) == len(others):  # `unknown` tests whether each average gets a decision
-            expect_passed_on(others, decisions, (first, nanoseconds), fraction=0.5)
+        unusual_temperatures = [*UNKNOWN, -temperatures[0], HUGE]
+        decisions = harness.send(unusual_temperatures, first, nanoseconds=nanoseconds)
+        if len(decisions) == len(unusual_temperatures):  # `unknown` tests whether each average gets a decision
+            expect_passed_on(unusual_temperatures, decisions, (first, nanoseconds), fraction=0.5)
         count = len(harness.send(temperatures[:1] * QUEUE, apart=0.0))
-    observation = f"Of {QUEUE} averages that came at once, {count} got a decision: a queue of {QUEUE} holds them all."
+    observation = (
+        f"Of {QUEUE} averages that arrived at once, {count} got a decision: a queue of {QUEUE} holds them all."
+    )
     expect(count == QUEUE, observation, fraction=0.5)
 
 
@@ -254,7 +260,7 @@ def test_passes_on(start: Start, draw: Random) -> None:
 @hint("A name that begins with a slash is the same in every namespace: two robots would share it.")
 @hint("'temperature' is relative, '/temperature' is not.")
 def test_relative(workspace: Workspace) -> None:
-    """The topics have plain queues and relative names: in the namespace /a, temperature is /a/temperature."""
+    """The topics have the default QoS and relative names: in the namespace /a, temperature is /a/temperature."""
     topics = {
         THERMOMETER: ("temperature",),
         SMOOTHER: ("temperature", "smoothed"),

@@ -16,7 +16,7 @@ check = group("packages")
 
 @check(points=2, covers=("temperature", "decision"), doc=contract.INTERFACES_DOC)
 @hint("Compare with the table of the messages, letter by letter.", "The order of the fields counts, too.")
-@hint("The table has no default, which is a value behind the name of a field.")
+@hint("The fields have no defaults: write no value after the name of a field.")
 def test_definitions(workspace: Workspace) -> None:
     """Both messages have the fields of the contract."""
     expect_definitions(workspace)
@@ -31,27 +31,27 @@ def test_messages_are_generated(workspace: Workspace, builds: Mapping[str, Diagn
     shared = installed.inspect_package(workspace.install, INTERFACES).shared
     missing_paths = [path for path in contract.MESSAGES if path not in shared]
     expect(
-        not missing_paths, f"The build made no code for {' and '.join(missing_paths)}: CMakeLists.txt does not list it."
+        not missing_paths, f"The build generated no code for {' and '.join(missing_paths)}: list it in CMakeLists.txt."
     )
 
 
 @check(points=1, covers=("interfaces-manifest", "licence", "stamp-package"), doc=contract.INTERFACES_DOC)
 @hint("Which tool installs what the generated code needs when it runs?")
-@hint("Two buildtool_depends, a depend, an exec_depend, a member_of_group, and the build type: 03_interfaces has them.")
+@hint("Two buildtool_depends, a depend, an exec_depend, a member_of_group, and the build type, as in 03_interfaces.")
 def test_interface_manifest(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
-    """motor_guard_interfaces says that it holds messages, what these need and its licence; the ament index knows it."""
+    """motor_guard_interfaces declares its group, its dependencies and its licence, and is in the ament index."""
     package_manifest = manifest.read(source_of(workspace, INTERFACES))
-    wrong = packaging.wrong_for_interfaces(package_manifest, {"builtin_interfaces": "Temperature"})
-    expect(not wrong, f"In package.xml {'; '.join(wrong)}.", fraction=0.5)
+    mistakes = packaging.wrong_for_interfaces(package_manifest, {"builtin_interfaces": "Temperature"})
+    expect(not mistakes, f"In package.xml, {'; '.join(mistakes)}.", fraction=0.5)
     _expect_licence(package_manifest)
     if builds[INTERFACES] is OK:
-        message = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."
+        message = f"The ament index does not contain {INTERFACES}: CMakeLists.txt does not call ament_package()."
         expect(installed.inspect_package(workspace.install, INTERFACES).marker, message, fraction=0.5)
 
 
 @check(points=2, covers="packages", after=("messages_are_generated",), doc=contract.PACKAGES_DOC)
 @hint("entry_points={'console_scripts': ['thermometer = motor_guard.thermometer:main', ...]}")
-@hint("install_scripts in setup.cfg says where programs go; ros2 pkg create has written it.")
+@hint("install_scripts in setup.cfg sets where programs are installed. ros2 pkg create writes it.")
 def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Colcon builds motor_guard, and installs three programs where ros2 finds them."""
     require_built(builds, PACKAGE)
@@ -65,11 +65,11 @@ def test_installs(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None
     after=("installs",),
     doc=contract.PACKAGES_DOC,
 )
-@hint("rosdep reads package.xml and nothing else: what is missing there is missing on every other machine.")
+@hint("rosdep reads only package.xml: a dependency that is missing there is missing on every other machine.")
 @hint("depend for what the nodes import, exec_depend for what the launch file imports.")
-@hint("setup.py as ros2 pkg create wrote it has the marker, package.xml and pytest: fill in, and leave the rest.")
+@hint("setup.py, as ros2 pkg create writes it, names the marker, package.xml and pytest. Keep these lines.")
 def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
-    """package.xml of motor_guard declares all that it needs and its licence; setup.py agrees, and installs it."""
+    """package.xml of motor_guard declares its dependencies and licence. setup.py agrees with it, and installs it."""
     require_built(builds, PACKAGE)
     source = source_of(workspace, PACKAGE)
     package_manifest, installation = manifest.read(source), installed.inspect_package(workspace.install, PACKAGE)
@@ -83,15 +83,19 @@ def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> 
     packaging.expect_pytest(workspace, installation, fraction=0.5)
     metadata_name = installation.metadata.get("Name", "").replace("-", "_")  # setuptools may write - for _
     expect(
-        metadata_name == PACKAGE, f"The name is {metadata_name} in setup.py, {PACKAGE} in package.xml.", fraction=0.5
+        metadata_name == PACKAGE, f"The name is {metadata_name} in setup.py and {PACKAGE} in package.xml.", fraction=0.5
     )
     modules = {module.rpartition(".")[2] for module in installation.modules}
     absent_names = [name for name in PROGRAMS if name not in modules]
-    message = f"No module {', '.join(absent_names)} is installed: each program is main in the module of its name."
+    message = (
+        f"Modules that are not installed: {', '.join(absent_names)}. Each program is main in the module of its name."
+    )
     expect(not absent_names, message, fraction=0.5)
 
 
 def _expect_licence(package_manifest: manifest.Manifest) -> None:
     licences = ", ".join(package_manifest.licences)
-    message = f"package.xml of {package_manifest.name} says the licence {licences}: it should be {contract.LICENCE}."
+    message = (
+        f"package.xml of {package_manifest.name} has the licence {licences or 'none'} instead of {contract.LICENCE}."
+    )
     expect(licences == contract.LICENCE, message, fraction=0.5)

@@ -1,4 +1,4 @@
-"""The key to question 1: the right letter of each choice, and why the other ones are wrong."""
+"""The key to question 1: the correct letter of each choice, and why the others are wrong."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ class Question:
     Attributes:
         objective: the key, in the syllabus, of the objective that the question tests.
         title: the question's topic, which must not give the answer away.
-        right: the right letter.
-        wrong: for each other letter, why it is wrong, without naming the right one.
+        correct_letter: the letter of the correct answer.
+        explanations: for each other letter, why it is wrong, without naming the correct one.
         hints: shown one after the other if the answer is wrong.
         doc: a page to read.
     """
 
     objective: str
     title: str
-    right: str
-    wrong: Mapping[str, str]
+    correct_letter: str
+    explanations: Mapping[str, str]
     hints: tuple[str, str]
     doc: str
 
@@ -35,32 +35,35 @@ QUESTIONS = {
         "What setup.py is for.",
         "b",
         {
-            "a": "No line of setup.py has to do with C++: a C++ package has a CMakeLists.txt, and no setup.py.",
-            "c": "Runtime dependencies are what package.xml names, and rosdep reads no other file; setup.py's "
-            "install_requires is for pip, which has no part in a colcon build. And setup.py does far more than that.",
-            "d": "Messages are .msg files of an interface package; its CMakeLists.txt has the code for them generated.",
+            "a": "setup.py has nothing to do with C++: a C++ package has a CMakeLists.txt and no setup.py.",
+            "c": "package.xml names the runtime dependencies, and rosdep reads no other file. install_requires in "
+            "setup.py is for pip, which has no part in a colcon build. And setup.py does far more than that.",
+            "d": "Messages are .msg files of an interface package. Its CMakeLists.txt generates the code for them.",
         },
-        ("Open a setup.py of the course: which keywords does setup() take?", "Who reads it: rosdep, colcon or CMake?"),
+        (
+            "Open a setup.py of the course: which keywords does setup() take?",
+            "Which tool reads it: rosdep, colcon or CMake?",
+        ),
         f"{_DOCS}/How-To-Guides/Developing-a-ROS-2-Package.html",
     ),
     "q2": Question(
         "structure",
-        "A program that was built, and that ros2 run does not find.",
+        "A program that was built, but that ros2 run does not find.",
         "c",
         {
-            "a": "A dependency in package.xml has something installed; it does not say where your own programs go.",
-            "b": "Without an entry point there would be no bin/driver at all: this one was made.",
-            "d": "Without the marker ros2 run would say that the package is not found. It found the package.",
+            "a": "A dependency in package.xml installs another package. It does not say where your own programs go.",
+            "b": "Without an entry point, there would be no bin/driver, but the build created it.",
+            "d": "Without the marker, ros2 run would say that the package is not found. It found the package.",
         },
         ("Where does ros2 run look, and where does Python put programs by itself?", "One of the files has two lines."),
         f"{_DOCS}/How-To-Guides/Developing-a-ROS-2-Package.html",
     ),
     "q3": Question(
         "nodes",
-        "A module that is in src and not in the install space.",
+        "A module that is in src, but not in the install space.",
         "a",
         {
-            "b": "package.xml names packages of other people; my_robot.nodes is a part of your own.",
+            "b": "package.xml names other packages. my_robot.nodes is a part of your own package.",
             "c": "setup.py runs on the building machine and says what is installed: an import there installs nothing.",
             "d": "Sourcing shows a shell what was installed. The module was not installed, so there is nothing to see.",
         },
@@ -72,12 +75,12 @@ QUESTIONS = {
         "How a node ends.",
         "d",
         {
-            "a": "SIGTERM raises ExternalShutdownException, which nothing catches here; and after Ctrl-C the signal "
-            "handler has shut the context down already, so that shutdown() raises.",
-            "b": "This takes every bug for a regular end, too; and after Ctrl-C shutdown() still raises.",
-            "c": "spin() does not return then: it raises, so that destroy_node() is never reached.",
+            "a": "SIGTERM raises ExternalShutdownException, which nothing catches here. After Ctrl-C, the signal "
+            "handler has already shut the context down, so shutdown() raises.",
+            "b": "This also treats every bug as a regular end. After Ctrl-C, shutdown() still raises.",
+            "c": "spin() does not return then: it raises, so destroy_node() is never reached.",
         },
-        ("Two signals, two exceptions: which?", "Who has shut the context down when finally is reached?"),
+        ("Two signals raise two exceptions: which?", "Is the context already shut down when finally is reached?"),
         f"{_DOCS}/p/rclpy/api/init_shutdown.html",
     ),
     "q5": Question(
@@ -86,10 +89,10 @@ QUESTIONS = {
         "b",
         {
             "a": "Nothing is sent twice to become reliable: the two ends do not match, and then exchange nothing.",
-            "c": "Incompatible quality of service is no exception: the node runs on, with a warning in its log.",
+            "c": "Incompatible quality of service raises no exception: the node runs, with a warning in its log.",
             "d": "Each match delivers a message once. Here there is not even one match.",
         },
-        ("A depth alone, 10, stands for a profile: reliable or best effort?", "Requested must not exceed offered."),
+        ("Is the profile of a depth alone, 10, reliable or best effort?", "Requested must not exceed offered."),
         f"{_DOCS}/Concepts/Intermediate/About-Quality-of-Service-Settings.html",
     ),
     "q6": Question(
@@ -97,11 +100,11 @@ QUESTIONS = {
         "A service that is called from within a callback.",
         "a",
         {
-            "b": "Between two programs of which one spins elsewhere it would be so. Who takes the answer here?",
-            "c": "rclpy does not look who calls, and raises nothing: it waits.",
-            "d": "The request is sent and answered. The answer arrives, and somebody would have to take it.",
+            "b": "That would be true if another thread received the answer. Which thread receives it here?",
+            "c": "rclpy does not check where call() is used. It raises nothing, and waits.",
+            "d": "The request is sent and answered. The answer arrives, but a thread has to receive it.",
         },
-        ("How many threads does rclpy.spin() have?", "call() waits; what does it wait for, and who would do that?"),
+        ("How many threads does rclpy.spin() have?", "call() waits for the answer. Which thread receives it?"),
         f"{_DOCS}/How-To-Guides/Sync-Vs-Async.html",
     ),
     "q7": Question(
@@ -110,10 +113,10 @@ QUESTIONS = {
         "c",
         {
             "a": "data_files copies the text. No import finds a text file: code has to be generated from it.",
-            "b": "A class of your own is no message: no tool, no other language and no recording knows it.",
-            "d": "<export> takes the build type and the like; a definition is a file of its own.",
+            "b": "A class of your own is not a message: no tool, no other language and no recording can use it.",
+            "d": "<export> is for the build type and similar facts. A definition is a file of its own.",
         },
-        ("Which build type runs the generators?", "Two packages of one name clash."),
+        ("Which build type runs the generators?", "Two packages with the same name clash."),
         f"{_DOCS}/Tutorials/Beginner-Client-Libraries/Custom-ROS2-Interfaces.html",
     ),
     "q8": Question(
@@ -121,19 +124,19 @@ QUESTIONS = {
         "Which kind of interface fits a long job.",
         "d",
         {
-            "a": "A message on a topic has no answer: the caller would never know whether the job was taken.",
-            "b": "A service answers once, at the end; there is no word on the way, and nothing to call back.",
-            "c": "A parameter configures a node; it knows neither progress nor an end.",
+            "a": "A message on a topic has no answer: the caller would never know whether the job was accepted.",
+            "b": "A service answers once, at the end. It reports no progress and cannot be cancelled.",
+            "c": "A parameter configures a node. It has neither progress nor an end.",
         },
-        ("Goal, feedback, result.", "Which of the four is made of three parts?"),
+        ("Goal, feedback, result.", "Which of the four has three parts?"),
         f"{_DOCS}/Concepts/Basic/About-Actions.html",
     ),
     "q9": Question(
         "build-and-test",
-        "What the exit status of colcon test says.",
+        "What the exit status of colcon test tells you.",
         "a",
         {
-            "b": "By default it ends with 0 also when a test has failed, and when none was found.",
+            "b": "By default, it ends with 0 even if a test fails, or if no test is found.",
             "c": "colcon measures no coverage unless it is told to.",
             "d": "colcon test builds nothing: it tests what the last colcon build left.",
         },
@@ -142,38 +145,38 @@ QUESTIONS = {
     ),
     "q10": Question(
         "build-and-test",
-        "A test that looks too early.",
+        "A test that checks its result too early.",
         "d",
         {
-            "a": "pytest runs ROS nodes like any other Python code; the course's own tests do.",
-            "b": "A message made by hand is as good as a lidar's, and better for a test: it is the same each time.",
-            "c": "Two profiles that do not match would be a reason in another test; here they are the same.",
+            "a": "pytest runs ROS nodes like any other Python code, as in the tests of 06_testing.",
+            "b": "A message that a test creates is as good as a lidar's, and better for a test: it is always the same.",
+            "c": "Profiles that do not match would be a reason. Here they are the same.",
         },
-        ("When does a callback run?", "What stands between publish() and assert in the tests of 06_testing?"),
+        ("When does a callback run?", "In the tests of 06_testing, what is between publish() and assert?"),
         f"{_DOCS}/Concepts/Intermediate/About-Executors.html",
     ),
     "q11": Question(
         "best-practices",
-        "A reading of a lidar that is no measurement.",
+        "A reading of a lidar that is not a measurement.",
         "b",
         {
-            "a": "A reading's place in the list is its bearing: what comes after the gap would point elsewhere.",
-            "c": "range_max says that the way is free so far. Nobody measured that.",
-            "d": "0.0 is no distance that a lidar measures, and a minimum over the list would take it for a wall.",
+            "a": "A reading's place in the list is its bearing: all later readings would get a wrong bearing.",
+            "c": "range_max means that the way is free up to there. The lidar did not measure that.",
+            "d": "0.0 is not a distance that a lidar measures. A minimum over the list would mistake it for a wall.",
         },
         ("What else does a reading have besides its value?", "REP 117 has a word for `not known`."),
         "https://www.ros.org/reps/rep-0117.html",
     ),
     "q12": Question(
         "best-practices",
-        "An exception that is expected, and those that are not.",
+        "An exception that is expected, and others that are not.",
         "c",
         {
-            "a": "A misspelt name raises, too, and would be logged for ever by a node that looks alive.",
-            "b": "Then every hiccup of the sensor ends the node, although somebody knew that it would come.",
-            "d": "This hides even the end of the program from itself: KeyboardInterrupt is a BaseException.",
+            "a": "A misspelt name also raises, and a node that looks alive would log it for ever.",
+            "b": "Then every short failure of the sensor ends the node, although this failure is expected.",
+            "d": "This even catches Ctrl-C: KeyboardInterrupt is a BaseException.",
         },
-        ("Which exceptions do you expect, by name?", "Who listens downstream, and what should they hear?"),
+        ("Which exceptions do you expect, by name?", "Which nodes are downstream, and what should they be told?"),
         "https://docs.python.org/3/tutorial/errors.html",
     ),
 }

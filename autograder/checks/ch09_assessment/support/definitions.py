@@ -11,7 +11,7 @@ from autograder.checks.ch09_assessment.support.robot import source_of
 
 
 def expect_definitions(workspace: Workspace) -> None:
-    """Fail the check unless both messages follow the contract; right fields earn part of the points."""
+    """Fail the check unless both messages follow the contract; correct fields earn part of the points."""
     folder = source_of(workspace, INTERFACES)
     sentences, shares = [], []
     for path, text in MESSAGES.items():
@@ -33,7 +33,7 @@ def _empty_defaults(path: str, interface: interfaces.Interface) -> list[interfac
     ]
     return [
         interfaces.Difference(
-            interfaces.Aspect.DEFAULTS, f"{path}: {field.name} has the default {field.default!r}, it should be none."
+            interfaces.Aspect.DEFAULTS, f"{path}: {field.name} has the default {field.default!r}. It should have none."
         )
         for field in fields
     ]
@@ -43,7 +43,7 @@ def _definition_text(folder: Path, path: str) -> str:
     file = folder / path
     if file.is_symlink() or not file.is_file():
         names = sorted(str(other.relative_to(folder)) for other in folder.glob("msg/*.msg"))
-        raise CheckFailed(f"{INTERFACES} has no {path}; it has {', '.join(names) or 'no message at all'}.")
+        raise CheckFailed(f"{INTERFACES} has no {path}. Its messages: {', '.join(names) or 'none'}.")
     text = file.read_bytes()[: interfaces.MAX_BYTES + 1].decode(errors="replace")
     expect(
         "NotImplementedError" not in text,

@@ -69,7 +69,7 @@ class Types:
             missing_fields = [field for field in fields if field not in field_names]
             expect(
                 not missing_fields,
-                f"{name}.msg has no {' and no '.join(missing_fields)}: nobody can talk to the nodes.",
+                f"{name}.msg has no {' and no '.join(missing_fields)}: the grader cannot use this message.",
             )
         return cls(package.msg.Temperature, package.msg.Decision)
 
@@ -154,17 +154,15 @@ class NodeHarness(AutoHarness):
         start, seconds = self.seconds, (count + 0.5) * period
         self.run(seconds)
         actual = [received.message.celsius for received in self.published()]
-        expect(bool(actual), f"In {seconds:.1f} s it published nothing.")
+        expect(bool(actual), f"In {seconds:.1f} s, it published nothing.")
         for number, celsius in enumerate(actual, self._count_missed(actual, period, shape, reading)):
             expected = reading(number, *shape)
             if not near(celsius, expected):
-                raise CheckFailed(
-                    f"Reading number {number} was {celsius:.2f} °C, it should have been {expected:.2f} °C."
-                )
+                raise CheckFailed(f"Reading number {number} was {celsius:.2f} °C instead of {expected:.2f} °C.")
         published_count = round(self.rate(self._output, start) * seconds)
         expect(
             abs(published_count - count) <= 1,
-            f"In {seconds:.1f} s it published {published_count} readings, instead of {count}.",
+            f"In {seconds:.1f} s, it published {published_count} readings instead of {count}.",
             fraction=0.5,
         )
 
@@ -183,9 +181,9 @@ class NodeHarness(AutoHarness):
             parameters.NodeParameters(self, f"/{self._name}").change(values)
 
     def expect_in_graph(self) -> None:
-        """Fail the check unless the node has the right name, and the right topics with the right types."""
+        """Fail the check unless the node has the correct name, and the correct topics and types."""
         nodes = self.nodes()
-        message = f"The node is called {', '.join(nodes)}, it should be /{self._name}."
+        message = f"The node is called {', '.join(nodes)} instead of /{self._name}."
         expect(f"/{self._name}" in nodes, message, fraction=0.5)
         publishes = dict(self.node.get_publisher_names_and_types_by_node(self._name, "/"))
         subscribes = dict(self.node.get_subscriber_names_and_types_by_node(self._name, "/"))
@@ -206,11 +204,11 @@ def _expect_topics(node: str, verb: str, actual: Mapping[str, list[str]], expect
     for topic, kind in expected.items():
         full_type = f"{INTERFACES}/msg/{kind}"
         similar = nearest(topic, actual, 0.5)
-        instead = f", {node} {verb} {similar}" if similar else ""
-        expect(topic in actual, f"{node} should have {topic[1:]}{instead or ', and it has nothing like it'}.")
+        instead = f"It {verb} {similar} instead." if similar else "It has no similar topic."
+        expect(topic in actual, f"{node} should have the topic {topic[1:]}. {instead}")
         expect(
             actual[topic] == [full_type],
-            f"{node} {verb} {topic} as {', '.join(actual[topic])}, instead of {full_type}.",
+            f"{node} {verb} {topic} as {', '.join(actual[topic])} instead of {full_type}.",
         )
 
 
@@ -229,7 +227,7 @@ def refuses(workspace: Workspace, types: Types, name: str, **values: float) -> b
         is_silent = error.diagnosis.kind is Kind.ENDED_EARLY and "(exit status 0)" in error.diagnosis.sentence
         values_text = ", ".join(f"{parameter} {value}" for parameter, value in values.items())
         observation = f"Started with {values_text}, {name} ended with exit status 0"
-        expect(not is_silent, f"{observation}: one that ends with an error has another status.", fraction=0.75)
+        expect(not is_silent, f"{observation}. A node that ends with an error has another exit status.", fraction=0.75)
         return True
 
 
@@ -258,6 +256,6 @@ def expect_executables(installed: Iterable[str], misplaced: Iterable[str], expec
     names = set(installed)
     absent = ", ".join(name for name in expected if name not in names)
     if absent and list(misplaced):
-        raise CheckFailed(f"{absent} went to bin/, where ros2 run does not look: setup.cfg says where programs go.")
-    message = f"The program {absent} is not installed; installed are: {', '.join(sorted(names)) or 'none'}."
+        raise CheckFailed(f"{absent} was installed in bin/, where ros2 run does not look: set the folder in setup.cfg.")
+    message = f"Programs that are not installed: {absent}. Installed programs: {', '.join(sorted(names)) or 'none'}."
     expect(not absent, message, fraction=0.5 if names else 0.0)

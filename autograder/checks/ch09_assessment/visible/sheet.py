@@ -1,4 +1,4 @@
-"""Question 1: each question has a letter. No visible check reveals whether the letter is right."""
+"""Question 1: each question has a letter. No visible check reveals whether the letter is correct."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from autograder.checks.ch09_assessment.support.sheet import answers, expect_lett
 @check(points=1, covers="sheet", group="choices")
 @hint("A line is `q1: a`: the question, a colon, a space, one letter.", "A guess costs nothing; a gap earns nothing.")
 def test_answered(workspace: Workspace) -> None:
-    """Question 1: each question has an answer, one of four letters; whether it is right is not looked at."""
+    """Question 1: each question has an answer, one of four letters. Whether it is correct is not checked."""
     answers_by_question = answers(workspace)
     for question in QUESTIONS:
         expect_letter(answers_by_question, question)
-    unknown = sorted(set(answers_by_question) - set(QUESTIONS))
-    expect(not unknown, f"There is no question {', '.join(unknown)[:80]}.")
+    unknown_questions = sorted(set(answers_by_question) - set(QUESTIONS))
+    expect(not unknown_questions, f"There is no question {', '.join(unknown_questions)[:80]}.")

@@ -21,14 +21,14 @@ from autograder.checks.ch09_assessment.support.robot import Start, expect_execut
 
 
 @check(points=1, covers=("temperature", "decision"), group="packages", doc=contract.INTERFACES_DOC)
-@hint("Two files in msg/, a field a line: type, space, name.", "builtin_interfaces/Time stamp stands first.")
+@hint("Two files in msg/, one field per line: type, space, name.", "builtin_interfaces/Time stamp is the first field.")
 def test_definitions(workspace: Workspace) -> None:
     """Question 3: both messages have the fields of the contract."""
     expect_definitions(workspace)
 
 
 @check(points=1, covers="packages", group="packages", after=("definitions",), doc=contract.PACKAGES_DOC)
-@hint("rosidl_generate_interfaces names both .msg files, and builtin_interfaces behind DEPENDENCIES.")
+@hint("rosidl_generate_interfaces names both .msg files, and builtin_interfaces after DEPENDENCIES.")
 @hint("console_scripts in setup.py: thermometer = motor_guard.thermometer:main, and so on.")
 def test_builds(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
     """Question 3: colcon builds both packages, installs three programs and the launch file; imports are declared."""
@@ -56,19 +56,19 @@ def test_measures(start: Start) -> None:
 @check(points=1, covers=("smoother", "window"), group="nodes", after=("builds",), doc=contract.NODES_DOC)
 @hint("deque(maxlen=window) forgets the oldest reading by itself.", "One average for each reading that is finite.")
 def test_smooths(start: Start) -> None:
-    """Question 3: smoother publishes the mean of the newest finite readings, by its window, and the newest stamp."""
+    """Question 3: smoother publishes the mean of the finite readings in its window, with the newest stamp."""
     with start(SMOOTHER) as harness:
         harness.expect_in_graph()
         averages = harness.send([40.0, 50.0, math.nan, 60.0])
     actual = [round(message.celsius, 1) for message in averages]
-    expect(actual == [40.0, 45.0, 50.0], f"40, 50, nan, 60 °C became {actual}, and should become [40.0, 45.0, 50.0].")
+    expect(actual == [40.0, 45.0, 50.0], f"40, 50, nan, 60 °C became {actual} instead of [40.0, 45.0, 50.0].")
     stamps = [message.stamp.sec for message in averages]
-    expect(stamps == [1, 2, 4], f"Their stamps were {stamps} s, and those of the newest readings are [1, 2, 4] s.")
+    expect(stamps == [1, 2, 4], f"The stamps were {stamps} s instead of [1, 2, 4] s, those of the newest readings.")
     with start(SMOOTHER, window=2) as harness:
         actual = [round(message.celsius, 1) for message in harness.send([40.0, 50.0, 70.0])]
     expect(
         actual == [40.0, 45.0, 60.0],
-        f"With window 2, 40, 50, 70 °C became {actual}, and should become [40.0, 45.0, 60.0].",
+        f"With window 2, 40, 50, 70 °C became {actual} instead of [40.0, 45.0, 60.0].",
     )
 
 
@@ -76,16 +76,16 @@ def test_smooths(start: Start) -> None:
 @hint(
     "Remember the last decision in self.",
     "Between the two thresholds nothing changes.",
-    "nan is not known: the fan runs.",
+    "nan is an unknown temperature: the fan runs.",
 )
 def test_decides(start: Start) -> None:
-    """Question 3: guard switches the fan on when it is hot or not known, off when it is cool, and passes both on."""
+    """Question 3: guard decides at hot, cool and unknown temperatures, and passes stamp and temperature on."""
     with start(GUARD) as harness:
         harness.expect_in_graph()
         decisions = harness.send([45.0, 65.0, 55.0, 45.0, math.nan])
     actual = [message.cooling for message in decisions]
     expected = [False, True, True, False, True]
-    expect(actual == expected, f"At 45, 65, 55, 45, nan °C, cooling was {actual}, not {expected}.")
+    expect(actual == expected, f"At 45, 65, 55, 45, nan °C, cooling was {actual} instead of {expected}.")
     inputs = [(message.stamp.sec, round(message.celsius, 1)) for message in decisions[:3]]
     expect(inputs == [(1, 45.0), (2, 65.0), (3, 55.0)], f"Stamps and temperatures of the decisions were {inputs}.")
 
