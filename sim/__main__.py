@@ -40,7 +40,7 @@ python -m sim WORLD                  run it as the ROS 2 node `simulator`
 python -m sim picture WORLD OUT.png  draw a world
 python -m sim plot RUN.npz OUT.svg   draw a recorded run
 python -m sim export RUN.npz OUT     write it as .gif, .mp4, .html or .mcap
-python -m sim teleop                 drive a robot by the keys of this terminal
+python -m sim teleop                 drive a robot with the keys of this terminal
 """
 
 
@@ -70,7 +70,7 @@ def run(
 ) -> None:
     """Run WORLD as the ROS 2 node `simulator`, until Ctrl-C.
 
-    What follows is handed to ROS: `python -m sim lab.yaml --ros-args -p lidar_noise:=0.01 -r scan:=lidar/scan`.
+    Further arguments are passed to ROS: `python -m sim lab.yaml --ros-args -p lidar_noise:=0.01 -r scan:=lidar/scan`.
     """
     from sim.bridge.node import main as run_node
 
@@ -93,7 +93,7 @@ def run(
 @click.argument("world", type=_EXISTING_FILE)
 @click.argument("picture", type=_NEW_FILE)
 @_THEME
-@click.option("--scan/--no-scan", default=False, help="Put robots on the start poses, and show what they see.")
+@click.option("--scan/--no-scan", default=False, help="Place robots at the start poses, and draw their scans.")
 def picture(world: Path, picture: Path, theme: str, scan: bool) -> None:
     """Draw WORLD into PICTURE, a .png or .svg."""
     from sim.view import show
@@ -111,7 +111,7 @@ def picture(world: Path, picture: Path, theme: str, scan: bool) -> None:
 @click.argument("picture", type=_NEW_FILE)
 @click.option("--colour", type=click.Choice(["time", "clearance"]), default="time", show_default=True)
 @click.option("--mark", type=float, metavar="SECONDS", help="Mark an instant.")
-@click.option("--note", default="", help="What to write beside the mark.")
+@click.option("--note", default="", help="The text beside the mark.")
 @_THEME
 def plot(recording: Path, picture: Path, colour: Any, mark: float | None, note: str, theme: str) -> None:
     """Draw the tracks of a saved RECORDING into PICTURE, a .png or .svg."""
@@ -123,8 +123,8 @@ def plot(recording: Path, picture: Path, colour: Any, mark: float | None, note: 
 @main.command(name="export")
 @click.argument("recording", type=_EXISTING_FILE)
 @click.argument("out", type=click.Path(path_type=Path))
-@click.option("--speed", type=float, help="Of a .gif or .mp4: simulated seconds in a second.  [default: 1]")
-@click.option("--fps", type=float, help="Of a .gif or .mp4: frames a second.  [default: 10 or 25]")
+@click.option("--speed", type=float, help="For a .gif or .mp4: simulated seconds per second.  [default: 1]")
+@click.option("--fps", type=float, help="For a .gif or .mp4: frames per second.  [default: 10 or 25]")
 def export_(recording: Path, out: Path, **options: float | None) -> None:
     """Write a saved RECORDING as OUT: .gif, .mp4, .html, or .mcap for a rosbag2 folder of that name."""
     from sim.export import export
@@ -137,7 +137,7 @@ def export_(recording: Path, out: Path, **options: float | None) -> None:
 @click.option("--robot", "namespace", default="", metavar="NAMESPACE", help="The robot's namespace.")
 @click.option("--stamped", is_flag=True, help="Send TwistStamped instead of Twist.")
 def teleop(namespace: str, stamped: bool) -> None:
-    """Drive a robot by the keys of this terminal, over ROS."""
+    """Drive a robot with the keys of this terminal, over ROS."""
     from sim.bridge.teleop import drive
 
     drive(namespace, stamped=stamped)

@@ -17,7 +17,9 @@ class Window:
 
     def __post_init__(self) -> None:
         if not (0.0 <= self.start < self.end):
-            raise SpecError(f"a window from {self.start} s to {self.end} s; give a start of 0 or more and a later end")
+            raise SpecError(
+                f"a window from {self.start} s to {self.end} s is invalid; give a start of 0 or more and a later end"
+            )
 
     def holds(self, time_ns: int) -> bool:
         """Return whether a simulated time in nanoseconds is within the window."""
@@ -37,7 +39,9 @@ class DeadSector:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.first) and math.isfinite(self.last)):
-            raise SpecError(f"a dead sector from {self.first} to {self.last}; give two angles in radians")
+            raise SpecError(
+                f"a dead sector from {self.first} to {self.last} is invalid; give two finite angles in radians"
+            )
 
     @property
     def width(self) -> float:

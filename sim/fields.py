@@ -63,7 +63,7 @@ def compose_file(path: Path) -> yaml.MappingNode:
         ) from None
     except yaml.reader.ReaderError as error:
         line = text[: error.position].count("\n") + 1
-        raise WorldError("a character that YAML does not allow", "Take it out", path=name, line=line) from None
+        raise WorldError("a character that YAML does not allow", "Remove it", path=name, line=line) from None
     except (RecursionError, yaml.YAMLError, ValueError):
         raise WorldError("the file is nested too deeply to read", "Write a plain world file", path=name) from None
     if node is None:
@@ -135,7 +135,7 @@ class Reader:
         """Return a length in metres."""
         value = self._quantity(node, label, LENGTHS, self.units.length)
         if abs(value) > MAX_METRES:
-            raise error_at(self.path, node, f"{label} is {value:g} m", f"Keep within {MAX_METRES:g} m; mind the units")
+            raise error_at(self.path, node, f"{label} is {value:g} m", f"Keep within {MAX_METRES:g} m; check the units")
         return value
 
     def positive_length(self, node: yaml.Node, label: str) -> float:
@@ -149,7 +149,7 @@ class Reader:
         """Return an angle in radians, whose size may be at most 100."""
         value = self._quantity(node, label, ANGLES, self.units.angle)
         if abs(value) > 100.0:
-            raise error_at(self.path, node, f"{label} is {value:g} rad", "Give an angle within a turn; mind the units")
+            raise error_at(self.path, node, f"{label} is {value:g} rad", "Give an angle within a turn; check the units")
         return value
 
     def number(self, node: yaml.Node, label: str) -> float:

@@ -56,8 +56,8 @@ class LidarSpec:
                 raise SpecError(f"lidar {self.name!r}: {name} is {getattr(self, name)}; give {remedy}")
         if self.beams * self.angle_increment > math.tau * (1.0 + 1e-9):
             raise SpecError(
-                f"lidar {self.name!r}: {self.beams} beams {self.angle_increment} rad apart go round more than once, "
-                "and a beam would be doubled; give fewer beams or a smaller angle_increment"
+                f"lidar {self.name!r}: {self.beams} beams {self.angle_increment} rad apart cover more than a turn, "
+                "so that beams would overlap; give fewer beams or a smaller angle_increment"
             )
 
     @property

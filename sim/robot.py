@@ -12,7 +12,7 @@ from sim.faults import NO_FAULTS, Faults
 from sim.lidar import LDS_01, LidarSpec
 from sim.pose import Pose
 
-CONVEX = "three points or more of a convex polygon round (0, 0), anticlockwise, in metres"
+CONVEX = "three points or more of a convex polygon around (0, 0), anticlockwise, in metres"
 
 
 @dataclass(frozen=True, slots=True)

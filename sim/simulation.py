@@ -135,15 +135,16 @@ def _advance(
         max(body.max_linear, abs(robot.velocity.linear)) * seconds
         for body, robot in zip(scene.bodies, robots, strict=True)
     ]
-    others_stride = max(strides) if len(robots) > 1 else 0.0
-    others_stride = max(others_stride, scene.mover_speed * seconds)
+    max_other_stride = max(strides) if len(robots) > 1 else 0.0
+    max_other_stride = max(max_other_stride, scene.mover_speed * seconds)
     is_near = [
-        distance_to_nearest(simulation, time_ns, poses, index) - run.body.reach <= strides[index] + others_stride + 1e-3
+        distance_to_nearest(simulation, time_ns, poses, index) - run.body.reach
+        <= strides[index] + max_other_stride + 1e-3
         for index, run in enumerate(runs)
     ]
     if True not in is_near:
         for run in runs:
-            _advance_free(simulation, run, time_ns, ticks, tick_ns, run.noise, events)
+            _advance_unobstructed(simulation, run, time_ns, ticks, tick_ns, run.noise, events)
     else:
         for number in range(ticks):
             now_ns = time_ns + number * tick_ns
@@ -153,29 +154,29 @@ def _advance(
                     other_poses = [Pose(*other.vector[:3].tolist()) for other in runs]
                     max_distance = run.body.reach + 2.0 * strides[index] + 1e-3
                     obstacles = obstacles_around(simulation, now_ns + tick_ns, other_poses, index, max_distance)
-                    _advance_near(simulation, run, now_ns, tick_ns, noise[0], obstacles, events)
+                    _advance_near_obstacles(simulation, run, now_ns, tick_ns, noise[0], obstacles, events)
                 else:
-                    _advance_free(simulation, run, now_ns, 1, tick_ns, noise, events)
+                    _advance_unobstructed(simulation, run, now_ns, 1, tick_ns, noise, events)
     return tuple([_robot_state(robot, run) for robot, run in zip(robots, runs, strict=True)])
 
 
-def _advance_free(
+def _advance_unobstructed(
     simulation: Simulation, run: Run, time_ns: int, ticks: int, tick_ns: int, noise: Floats, events: list[Event]
 ) -> None:
     body, vector = run.body, run.vector
     command, command_ns = run.timed_command
-    advance_free = simulation.scene.engine.advance_free
+    advance_unobstructed = simulation.scene.engine.advance_unobstructed
     dt = tick_ns / 1e9
     active_ticks = min(max(-((time_ns - command_ns - body.watchdog_ns) // tick_ns), 0), ticks)
     if active_ticks:
-        advance_free(vector, command.linear, command.angular, active_ticks, dt, body.limits, body.drift, noise)
+        advance_unobstructed(vector, command.linear, command.angular, active_ticks, dt, body.limits, body.drift, noise)
     if active_ticks < ticks:
         _add_watchdog_event(run, time_ns + active_ticks * tick_ns, tick_ns, events)
-        advance_free(vector, 0.0, 0.0, ticks - active_ticks, dt, body.limits, body.drift, noise[active_ticks:])
+        advance_unobstructed(vector, 0.0, 0.0, ticks - active_ticks, dt, body.limits, body.drift, noise[active_ticks:])
     run.collided = False
 
 
-def _advance_near(
+def _advance_near_obstacles(
     simulation: Simulation,
     run: Run,
     time_ns: int,
@@ -190,7 +191,7 @@ def _advance_near(
         _add_watchdog_event(run, time_ns, tick_ns, events)
         command = REST
     contact = np.zeros(6)
-    is_hit = simulation.scene.engine.advance_near(
+    is_hit = simulation.scene.engine.advance_near_obstacles(
         run.vector,
         command.linear,
         command.angular,

@@ -56,7 +56,7 @@ class Simulation:
         if not names:
             raise SpecError("a simulation needs a robot; give robots=(RobotSpec(),)")
         if len(set(names)) < len(names):
-            raise SpecError(f"two robots have one name: {', '.join(names)}; give each its own")
+            raise SpecError(f"two robots have the same name: {', '.join(names)}; give each its own")
         if not 1e-4 <= self.tick <= 1.0:
             raise SpecError(f"tick is {self.tick} s; give the physics period, from 0.0001 to 1 s")
         if not isinstance(self.seed, int) or isinstance(self.seed, bool) or self.seed < 0:

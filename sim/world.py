@@ -32,7 +32,8 @@ class Goal:
     def __post_init__(self) -> None:
         if not (_is_within_limits(self.x) and _is_within_limits(self.y) and 0.0 < self.radius <= MAX_METRES):
             raise WorldError(
-                f"a goal at ({self.x}, {self.y}), radius {self.radius}", "Give metres, and a radius above 0"
+                f"a goal at ({self.x}, {self.y}) with radius {self.radius} is invalid",
+                "Give metres, and a radius above 0",
             )
 
 
@@ -185,7 +186,9 @@ def _table(rows: ArrayLike, width: int, label: str) -> Floats:
     if table.ndim != 2 or table.shape[1] != width:
         raise WorldError(f"{label} have the shape {table.shape}", f"Give rows of {width} numbers")
     if not (np.abs(table) <= MAX_METRES).all():
-        raise WorldError(f"{label} hold a number that is not within {MAX_METRES:g} m", "Give finite numbers in metres")
+        raise WorldError(
+            f"{label} contain a number that is not within {MAX_METRES:g} m", "Give finite numbers in metres"
+        )
     table[np.abs(table) < MIN_METRES] = 0.0
     table.flags.writeable = False
     return table
@@ -195,7 +198,7 @@ def _names(names: Sequence[str], count: int, label: str) -> tuple[str, ...]:
     if not names:
         return ("",) * count
     if len(names) != count:
-        raise WorldError(f"{label} holds {len(names)} names for {count}", "Give one name for each, or none at all")
+        raise WorldError(f"{label} contains {len(names)} names for {count}", "Give one name for each, or none at all")
     return tuple(names)
 
 

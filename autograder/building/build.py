@@ -51,7 +51,9 @@ def require_packages(source: Path, required: tuple[str, ...], *, complete: bool 
             continue
         for part in ("setup.py", "setup.cfg", f"resource/{name}", f"{name}/__init__.py"):
             if not (folder / part).exists():
-                sentence = f"src/{folder.name} has no {part}: the package is only half written, colcon needs that file."
+                sentence = (
+                    f"src/{folder.name} has no {part}: the package is incomplete, because colcon needs that file."
+                )
                 raise StudentError(Diagnosis(Kind.HALF_WRITTEN_PACKAGE, sentence))
     return packages
 
@@ -113,6 +115,6 @@ def _missing(source: Path, name: str, packages: Collection[str]) -> str:
     if not source.is_dir():
         return f"There is no ws/src folder: create the package {name} in it."
     if (source / name).is_dir():
-        return f"src/{name} has no package.xml with <name>{name}</name>: without it colcon does not see a package."
-    others = ", ".join(sorted(packages)) or "no package"
-    return f"The package {name} is missing: src contains {others}."
+        return f"src/{name} has no package.xml with <name>{name}</name>: without it, colcon does not find a package."
+    names = ", ".join(sorted(packages)) or "no package"
+    return f"The package {name} is missing: src contains {names}."

@@ -30,7 +30,7 @@ def main() -> None:
         workspace = Workspace(scratch / "ws", ros, scratch / "home")
         write_received(receive_tree(line, SOURCES), workspace.root / "src")
         try:
-            with reading("What your interface packages install"):
+            with reading("The files that your interface packages install"):
                 built = build_alone(workspace)
         except StudentError as error:
             send_message(line, failure_message(error))

@@ -76,7 +76,7 @@ def _sources(bundle: dict[str, Path]) -> dict[Entry, bytes]:
         if len(tree) > SOURCES.names or sum(map(len, tree.values())) > SOURCES.size:
             raise TreeError(f"more than {SOURCES.names} files and folders, or {SOURCES.size // MIB} MiB")
     except TreeError as error:
-        sentence = f"The packages {', '.join(bundle)} hold {error}: definitions of messages are small."
+        sentence = f"The packages {', '.join(bundle)} hold {error}: message definitions are small."
         raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence)) from None
     return tree
 
@@ -103,7 +103,7 @@ def build_alone(workspace: Workspace) -> dict[Entry, bytes]:
     installed_files = read_installed(workspace.install)
     for name in names:
         if Entry(name, "folder") not in installed_files:
-            sentence = f"colcon built {name} but installed nothing of it: look at its package.xml and CMakeLists.txt."
+            sentence = f"colcon built {name} but installed none of its files: check its package.xml and CMakeLists.txt."
             raise StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
     metadata = json.dumps({"install": str(workspace.install)}).encode()
     files = {

@@ -55,9 +55,10 @@ def replay(
         raise UsageError(f"{stored}: the result has no check {check!r}; it has: {known_checks}")
     folder = original.folder / "replay" / check
     with tempfile.TemporaryDirectory(prefix="replay-") as scratch:
+        full_result = original
         if submission is not None:
-            original = _grade_again(original, check, submission, Path(scratch), Isolation(isolation), mcap)
-        result = original.only(check) if original.status is Status.GRADED else original
+            full_result = _grade_again(original, check, submission, Path(scratch), Isolation(isolation), mcap)
+        result = full_result.only(check) if full_result.status is Status.GRADED else full_result
         page = feedback.write(result, folder, artifacts=result.folder)
         echo(f"The run of {check!r}: {page}")
         for bag in _bags(Path(scratch), folder):

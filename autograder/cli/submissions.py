@@ -37,14 +37,14 @@ def find_submissions(
     """
     if roster is None:
         discovered_submissions = discover(paths, assignment)
-        _print_others(discovered_submissions.others, verb)
-        yield discovered_submissions.submissions, not discovered_submissions.others
+        _print_unused(discovered_submissions.other_files, verb)
+        yield discovered_submissions.submissions, not discovered_submissions.other_files
         return
     if len(paths) != 1:
         raise UsageError("--roster needs exactly one download: a zip or a folder")
     with unpacked(paths[0]) as folder, TemporaryDirectory(prefix="attempts-") as scratch:
         collected_submissions = collect(folder, read_roster(roster), assignment, Path(scratch))
-        _print_others(collected_submissions.unmatched, verb)
+        _print_unused(collected_submissions.unmatched, verb)
         names_by_label = {
             "Not submitted": collected_submissions.missing,
             "Late": collected_submissions.late,
@@ -59,6 +59,6 @@ def find_submissions(
         yield collected_submissions.submissions, not collected_submissions.unmatched
 
 
-def _print_others(others: Sequence[tuple[str, str]], verb: str) -> None:
-    for name, reason in others:
+def _print_unused(entries: Sequence[tuple[str, str]], verb: str) -> None:
+    for name, reason in entries:
         echo(f"Not {verb}: {on_line(name)}: {on_line(reason)}.", err=True)

@@ -31,7 +31,7 @@ class Discovered:
     """Submissions by student, and the other files beside them, each with the reason why it is not a submission."""
 
     submissions: Mapping[str, Path]
-    others: tuple[tuple[str, str], ...]
+    other_files: tuple[tuple[str, str], ...]
 
 
 GradeJobs = Callable[[Sequence[Job], OnResult], None]
@@ -53,7 +53,7 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
         UsageError: a path does not exist, a folder contains no submission, or two submissions have the same name.
     """
     submissions: list[tuple[str, Path]] = []
-    others: list[tuple[str, str]] = []
+    other_files: list[tuple[str, str]] = []
     for path in paths:
         if not path.exists():
             raise UsageError(f"{path}: there is no such file or folder")
@@ -62,19 +62,20 @@ def discover(paths: tuple[Path, ...], assignment: str) -> Discovered:
         elif _is_submission(path, assignment):
             submissions.append((path.resolve().name, path))
         else:
-            folder_submissions, folder_others = _discover_in_folder(path, assignment)
+            folder_submissions, folder_other_files = _discover_in_folder(path, assignment)
             submissions += folder_submissions
-            others += folder_others
+            other_files += folder_other_files
     problems = {student: problem for student, _ in submissions if (problem := folder_name_problem(student))}
-    others += [(path.name, problems[student]) for student, path in submissions if student in problems]
+    other_files += [(path.name, problems[student]) for student, path in submissions if student in problems]
     submissions = [(student, path) for student, path in submissions if student not in problems]
     names = [student for student, _ in submissions]
     duplicates = sorted({name for name in names if names.count(name) > 1})
     if duplicates:
         raise UsageError(
-            f"two submissions are called {', '.join(duplicates)}: rename one, results would overwrite each other"
+            f"two submissions are called {', '.join(duplicates)}: rename one, because their results would "
+            "overwrite each other"
         )
-    return Discovered(dict(submissions), tuple(others))
+    return Discovered(dict(submissions), tuple(other_files))
 
 
 def student_of(path: Path) -> str:
@@ -136,8 +137,8 @@ def grade_all(
         return stored_result(job) if resume else None
 
     def add_result(result: Result) -> None:
-        graded_job, *others = groups[result.student]
-        copies = (reusable_result(job) or _copy(result, graded_job, job) for job in others)
+        graded_job, *equal_jobs = groups[result.student]
+        copies = (reusable_result(job) or _copy(result, graded_job, job) for job in equal_jobs)
         for student_result in (result, *copies):
             results[student_result.student] = student_result
             on_result(student_result)

@@ -63,7 +63,7 @@ def _execute(request: dict[str, Any], report: Any) -> None:
             nonlocal received_size
             received_size += len(repr(msg.get("content", "")))
             if received_size > request["max_output"]:
-                raise DeadKernelError("it prints without end")
+                raise DeadKernelError("it prints endlessly")
             return super().process_message(msg, cell, cell_index)
 
     notebook = nbformat.from_dict(request["notebook"])

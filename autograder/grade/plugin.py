@@ -164,8 +164,8 @@ class GradingPlugin:
         elif self._is_caused_by_data(error) and (data := self._data_name(item)):
             self.unjudged[check.id] = "".join(traceback.format_exception(error))
             sentence = (
-                f"{data} could not be judged, because it is nothing that this check expects "
-                f"({type(error).__name__}). Your instructor can see where."
+                f"{data} could not be judged, because this check does not expect such data "
+                f"({type(error).__name__}). Your instructor can see the details."
             )
             check_result = CheckResult.of(check, Outcome.FAILED, sentence, seconds=seconds)
         else:

@@ -72,21 +72,24 @@ def execute(notebook: NotebookNode, folder: Path, workspace: Workspace) -> Noteb
     (workspace.scratch / "jupyter").mkdir(exist_ok=True)
     skipped = [index for index, cell in enumerate(notebook.cells) if _would_overwrite(cell, folder)]
     request = {"notebook": notebook, "skipped": skipped, "cell_seconds": CELL_SECONDS, "max_output": MAX_OUTPUT}
-    with os.fdopen(os.memfd_create("request"), "w+b") as sent, os.fdopen(os.memfd_create("answer"), "w+b") as received:
-        sent.write(json.dumps(request).encode())
-        sent.seek(0)
+    with (
+        os.fdopen(os.memfd_create("request"), "w+b") as request_file,
+        os.fdopen(os.memfd_create("answer"), "w+b") as answer_file,
+    ):
+        request_file.write(json.dumps(request).encode())
+        request_file.seek(0)
         read_end, write_end = os.pipe()
         with os.fdopen(read_end, "rb") as started:
             with os.fdopen(write_end, "wb"):
-                descriptors = sent.fileno(), received.fileno(), write_end
+                descriptors = request_file.fileno(), answer_file.fileno(), write_end
                 command = [sys.executable, str(RUNNER), *map(str, descriptors)]
                 process = launch(command, _sandbox(folder, workspace), pass_fds=descriptors)
             with process:
                 process.wait(KERNEL.wall_seconds + 10)
             if not started.read(1):
                 raise GraderError(f"the notebook's sandbox did not answer: {tail(process.output)}")
-        received.seek(0)
-        answer = read_answer(received.read(MAX_ANSWER))
+        answer_file.seek(0)
+        answer = read_answer(answer_file.read(MAX_ANSWER))
     if answer.reason and not answer.cells:
         raise _kernel_error(process, answer.reason)
     for index, cell in enumerate(notebook.cells):

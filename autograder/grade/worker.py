@@ -122,7 +122,7 @@ class Grading:
             packages = submission.packages
             self._status = Status.GRADED
         if packages is None and submission.notebook is not None:
-            with self._phase("notebook"), reading("Your notebook, or what it wrote,"):
+            with self._phase("notebook"), reading("Your notebook, or a file that it wrote,"):
                 # Jupyter is slow to import, and not every submission needs it.
                 from autograder.grade import run_notebook
 
@@ -140,7 +140,7 @@ class Grading:
         source = self._workspace.root / "src"
         with reading("Your submission"):
             write_tree(packages, source)
-        with self._phase("build"), reading("Your packages, or what their build left,"):
+        with self._phase("build"), reading("Your packages, or a file from their build,"):
             if prebuilt := self._job.options.prebuilt:
                 outcome = copy_prebuilt(Path(prebuilt), self._workspace, self._suite.packages)
             else:

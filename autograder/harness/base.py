@@ -156,7 +156,7 @@ class Harness(ExitStack, ABC):
         self.callback(self._grader_node.close)
         self._actions = Actions(self._grader_node, self._arrival_seconds)
         self.node = self._grader_node.node
-        record_data("What your program showed of itself")
+        record_data("The ROS graph of your program")
         try:
             self._start()
             self._match()
@@ -168,7 +168,7 @@ class Harness(ExitStack, ABC):
     @property
     def output(self) -> str:
         """The output of the programs so far, including their logs."""
-        record_data("What your program printed")
+        record_data("The output of your program")
         return "".join(process.output for process in self.processes)
 
     def require_running(self) -> None:
@@ -202,7 +202,7 @@ class Harness(ExitStack, ABC):
 
     def messages(self, topic: str, *, since: float = -math.inf, until: float = math.inf) -> list[ReceivedMessage]:
         """Return the messages that arrived on a topic after `since` and not after `until`, in s since the start."""
-        record_data(f"What your program sent on {topic}")
+        record_data(f"The messages of your program on {topic}")
         received = self._received[topic]
         first = bisect_right(received, since, key=_SECONDS)
         return received[first : bisect_right(received, until, first, key=_SECONDS)]
@@ -217,7 +217,7 @@ class Harness(ExitStack, ABC):
         Returns:
             The response, or None if no such service answers within `seconds` of ROS time.
         """
-        record_data(f"What {name} answered")
+        record_data(f"The answer of {name}")
         answers: list[Any] = []
         start = self.seconds
         client = self._grader_node.client(service_type, name)
@@ -233,7 +233,7 @@ class Harness(ExitStack, ABC):
 
         The goal's `accepted` stays None if no server appears within `seconds` of ROS time.
         """
-        record_data(f"What {name} answered")
+        record_data(f"The answer of {name}")
         clients = self._actions.prepare(action_type, name)
         if not all(client is not None and self._wait_for_server(client, seconds) for client in clients):
             return Goal()
@@ -287,13 +287,11 @@ class Harness(ExitStack, ABC):
     def _await(self, condition: Callable[[], bool]) -> None:
         is_matched = self.wait_for(lambda: self._grader_node.is_impersonated() or condition(), MATCH_SECONDS)
         if self._grader_node.is_impersonated():
-            sentence = (
-                f"Your node is called {NAME}, which is the grader's own name: give it the name that is asked for."
-            )
+            sentence = f"Your node is called {NAME}, which is the grader's own name: give it the required name."
             raise StudentError(Diagnosis(Kind.RESERVED_NAME, sentence))
         if not is_matched:
             sentence = (
-                f"Your node and the grader did not discover each other within {MATCH_SECONDS:.0f} s: keep the "
-                "publishers, subscriptions and services that you make, and make all of them with rclpy."
+                f"Your node and the grader did not discover each other within {MATCH_SECONDS:.0f} s: create "
+                "your publishers, subscriptions and services with rclpy, and store them in attributes of the node."
             )
             raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))

@@ -103,7 +103,7 @@ def _command(received: ReceivedMessage) -> Command:
     try:
         return twist_to_command(received.message)
     except ValueError as error:
-        sentence = f"At t = {received.seconds:.1f} s your node published a command that no motor can obey: {error}."
+        sentence = f"At t = {received.seconds:.1f} s your node published a command that no motor can execute: {error}."
         raise StudentError(Diagnosis(Kind.UNUSABLE_COMMAND, sentence)) from None
 
 

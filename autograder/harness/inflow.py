@@ -32,9 +32,9 @@ class Inflow:
 
     def _error(self, topic: str) -> StudentError:
         sentence = (
-            f"Your programs sent {self._messages[topic]:,} messages of {self._bytes[topic] / MIB:.1f} MiB in all on "
-            f"{topic}, and in one run the grader takes no more than {self._limits.messages:,} messages and "
-            f"{self._limits.size / MIB:.0f} MiB from all topics: publish at the rate that is asked for, and small "
-            "messages."
+            f"Your programs sent {self._messages[topic]:,} messages ({self._bytes[topic] / MIB:.1f} MiB in all) on "
+            f"{topic}, but the grader accepts at most {self._limits.messages:,} messages and "
+            f"{self._limits.size / MIB:.0f} MiB from all topics in one run: publish small messages at the required "
+            "rate."
         )
         return StudentError(Diagnosis(Kind.FLOODED_OUTPUT, sentence))

@@ -152,7 +152,7 @@ class LaunchHarness(contextlib.ExitStack):
         profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         for topic, kind in self._subscribes.items():
             self._grader_node.subscribe(topic, kind, _append_to(self._received[topic]), profile)
-        record_data("What the launch started")
+        record_data("The programs of the launch")
         self._status_pipe, write_end = os.pipe()
         self.callback(os.close, self._status_pipe)
         os.set_blocking(self._status_pipe, False)
@@ -168,7 +168,7 @@ class LaunchHarness(contextlib.ExitStack):
     @property
     def output(self) -> str:
         """The output of the launch and its processes so far."""
-        record_data("What the launch printed")
+        record_data("The output of the launch")
         return self.process.output
 
     @property
@@ -213,7 +213,7 @@ class LaunchHarness(contextlib.ExitStack):
 
     def messages(self, topic: str) -> list[Any]:
         """Return the messages that were received on a topic of `subscribes`."""
-        record_data(f"What was sent on {topic}")
+        record_data(f"The messages on {topic}")
         return self._received[topic]
 
     def parameters(self, node: str, names: Collection[str], seconds: float = ANSWER_SECONDS) -> dict[str, Any] | None:

@@ -18,7 +18,7 @@ def value_of(answer: ParameterValue, name: str) -> Any:
     Raises:
         StudentError: the answer has a type that ROS does not know.
     """
-    with reading(f"What your node answered about its parameter {name}"):
+    with reading(f"Your node's answer about its parameter {name}"):
         if answer.type not in KNOWN_TYPES:
-            raise ValueError(f"{answer.type} is not a type of a parameter")
+            raise ValueError(f"{answer.type} is not a parameter type")
         return parameter_value_to_python(answer)

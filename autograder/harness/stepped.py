@@ -120,8 +120,8 @@ class SteppedHarness(Harness):
             for stepped in self._stepped:
                 self._give_turn(stepped, instant)
         sentence = (
-            f"Your nodes answered each other {MAX_ROUNDS} times without any time going by, and would go on for ever: a "
-            "callback must not publish what makes it run again."
+            f"Your nodes answered each other {MAX_ROUNDS} times at the same ROS time, and would continue for ever: a "
+            "callback must not publish a message that makes it run again."
         )
         raise StudentError(Diagnosis(Kind.STUCK, sentence))
 
@@ -160,7 +160,7 @@ class SteppedHarness(Harness):
             if channel in announced_channels and channel in self._grader_node.publisher_channels.values():
                 sentence = (
                     f"A message that was sent to your node on {channel.split()[0]} did not arrive: do not replace "
-                    "functions of rclpy, and take each message that comes."
+                    "functions of rclpy, and take each message that arrives."
                 )
                 raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))
 
@@ -208,11 +208,11 @@ class SteppedHarness(Harness):
         super()._match()
         descriptions = [stepped.description for stepped in self._stepped]
         for stepped in self._stepped:
-            others = [description for description in descriptions if description is not stepped.description]
-            early = _sum(description.early for description in others)
+            other_descriptions = [description for description in descriptions if description is not stepped.description]
+            early = _sum(description.early for description in other_descriptions)
             with self._attribute_errors_to(stepped):
                 stepped.stepper.match(
-                    _sum(description.kept for description in others),
+                    _sum(description.kept for description in other_descriptions),
                     {channel: count for channel, count in early.items() if not channels.is_topic(channel)},
                 )
             stepped.due = 0  # messages for a new subscription may have arrived

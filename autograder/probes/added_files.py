@@ -29,7 +29,7 @@ def install_with(workspace: Workspace, package: str, files: Iterable[str]) -> In
     with reading(f"The folder of {package}"):
         shutil.copytree(find_packages(workspace.root / "src")[0][package], folder, symlinks=True)
     for file in files:
-        with reading(f"{package}/{file}", advice="A file of that name was to be added: rename what has its place."):
+        with reading(f"{package}/{file}", advice="The check adds a file with this name: rename yours."):
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
             (folder / file).write_text("")
     build(copy, (package,))

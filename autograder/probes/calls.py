@@ -111,15 +111,18 @@ def run_steps(workspace: Workspace, module: str, *steps: Step, network: bool = F
     spec = workspace.sandbox(CALLS)
     spec = replace(spec, network=network, mounts=(*spec.mounts, Mount(RUNNER)))
     request = json.dumps({"module": module, "steps": [asdict(step) for step in steps]})
-    with os.fdopen(os.memfd_create("request"), "w+b") as sent, os.fdopen(os.memfd_create("answer"), "w+b") as answer:
-        sent.write(request.encode())
-        sent.seek(0)
-        descriptors = sent.fileno(), answer.fileno()
+    with (
+        os.fdopen(os.memfd_create("request"), "w+b") as request_file,
+        os.fdopen(os.memfd_create("answer"), "w+b") as answer_file,
+    ):
+        request_file.write(request.encode())
+        request_file.seek(0)
+        descriptors = request_file.fileno(), answer_file.fileno()
         command = [sys.executable, str(RUNNER), *map(str, descriptors)]
         with launch(command, spec, pass_fds=descriptors, profile="tests") as process:
             process.wait(CALLS.wall_seconds + 10)
-            answer.seek(0)
-            return parse_answer(answer.read(MAX_ANSWER + 1), module, len(steps), process)
+            answer_file.seek(0)
+            return parse_answer(answer_file.read(MAX_ANSWER + 1), module, len(steps), process)
 
 
 def parse_answer(data: bytes, module: str, count: int, process: Process) -> list[StepResult]:
@@ -128,7 +131,7 @@ def parse_answer(data: bytes, module: str, count: int, process: Process) -> list
     Raises:
         StudentError: the module could not be imported, the answer is truncated, or `call_runner` did not write it.
     """
-    with reading(f"What {module} answered"):
+    with reading(f"The answer of {module}"):
         answer = _parse(data)
         if answer is not None and "failed" in answer:
             raise StudentError(_import_diagnosis(module, answer["failed"]))
@@ -154,7 +157,10 @@ def value(outcome: StepResult, expression: str) -> Any:
 
 
 def same(one: Any, other: Any) -> bool:
-    """Return whether two JSON values are equal. nan equals nan, no int equals a bool, and floats may differ by 1e-9."""
+    """Return whether two JSON values are equal.
+
+    nan equals nan, an int never equals a bool, and floats may differ by 1e-9.
+    """
     if isinstance(one, list) and isinstance(other, list):
         return len(one) == len(other) and all(map(same, one, other))
     if isinstance(one, bool) or isinstance(other, bool) or one is None or other is None:
@@ -176,10 +182,10 @@ def _import_diagnosis(module: str, failure: object) -> Diagnosis:
     data = failure if isinstance(failure, dict) else {}
     kind, message, traceback_text = (str(data.get(name, "")) for name in ("raised", "message", "traceback"))
     if kind == "ModuleNotFoundError" and module in message:
-        sentence = f"The package installs no module {module}: is its file written? Look at its place, at __init__.py "
+        sentence = f"The package installs no module {module}: is its file written? Check its folder, __init__.py "
         frames = student_frames(traceback_text)  # all frames if none is the student's, and then all are the loader's
         detail = frames if frames != traceback_text else ""
-        return Diagnosis(Kind.CRASHED_AT_IMPORT, f"{sentence}and at packages in setup.py.", detail)
+        return Diagnosis(Kind.CRASHED_AT_IMPORT, f"{sentence}and `packages` in setup.py.", detail)
     return diagnose_crash(Crash("import", kind, message, traceback_text))
 
 

@@ -90,7 +90,7 @@ def _colcon_test(workspace: Workspace, package: str, *pytest_arguments: str) -> 
 def _copy_of(root: Path) -> Iterator[Path]:
     """Copy a workspace for one run, whose code may write to the copy. Later checks read the workspace itself."""
     copy = root.with_name(f"{root.name}-tested")  # not in scratch, where students' code may write
-    with reading("What colcon built"):
+    with reading("The files that colcon built"):
         shutil.copytree(root, copy, symlinks=True)
     try:
         yield copy

@@ -83,8 +83,8 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
         remaining -= len(text)
         if remaining < 0:
             raise CheckFailed(
-                f"{package.name} holds more than {MAX_ALL_BYTES // 2**20} MiB of Python, too much to look for its "
-                "imports: keep generated files out of the package."
+                f"{package.name} contains more than {MAX_ALL_BYTES // 2**20} MiB of Python, which is too much "
+                "to search for imports: keep generated files out of the package."
             )
         for module in modules(text) - first_party - siblings - sys.stdlib_module_names:
             by_module.setdefault(module, []).append(str(file))

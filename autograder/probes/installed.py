@@ -47,7 +47,7 @@ class Installed:
 
 def inspect_package(install: Path, package: str) -> Installed:
     """Return the installed files of a package; there are none if it was not installed."""
-    with reading(f"What colcon installed of {package}"):
+    with reading(f"The files that colcon installed for {package}"):
         return _inspect_package(install, package)
 
 

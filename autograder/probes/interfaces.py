@@ -28,7 +28,7 @@ class Unreadable(Exception):
 class Aspect(str, Enum):
     """The aspects in which two definitions can differ."""
 
-    FIELDS = "fields"  # a field's name, place or order
+    FIELDS = "fields"  # a field's name, position or order
     TYPES = "types"
     BOUNDS = "bounds"  # the maximum number of elements or characters
     DEFAULTS = "defaults"
@@ -175,10 +175,12 @@ class _Comparison:
         extra = [name for name in actual if name not in expected and name not in constants]
         for name in (name for name in expected if name not in actual):
             if name in self._actual_part:
-                yield self._difference(Aspect.FIELDS, f"{name} is in the {self._actual_part[name]}, it belongs here")
+                yield self._difference(
+                    Aspect.FIELDS, f"{name} is in the {self._actual_part[name]}, but it belongs here"
+                )
             elif near := nearest(name, (other for other in extra if other not in self._missing_elsewhere), _NEAR):
                 extra.remove(near)
-                yield self._difference(Aspect.FIELDS, f"a field is called {near}, it should be {name}")
+                yield self._difference(Aspect.FIELDS, f"a field is called {near}, but it should be {name}")
             else:
                 yield self._difference(Aspect.FIELDS, f"the field {name} is missing")
         for name in extra:
@@ -186,17 +188,19 @@ class _Comparison:
                 yield self._difference(Aspect.FIELDS, f"the contract has no field {name}")
         if expected.keys() == actual.keys() and list(expected) != list(actual):
             order, other = ", ".join(expected), ", ".join(actual)
-            yield self._difference(Aspect.FIELDS, f"the order of the fields is {other}, it should be {order}")
+            yield self._difference(Aspect.FIELDS, f"the order of the fields is {other}, but it should be {order}")
 
     def _field(self, expected: Field, actual: Field) -> Iterator[Difference]:
         if expected.element != actual.element:
-            yield self._difference(Aspect.TYPES, f"{actual.name} is {actual.type}, it should be {expected.type}")
+            yield self._difference(Aspect.TYPES, f"{actual.name} is {actual.type}, but it should be {expected.type}")
         elif expected.type != actual.type:
-            yield self._difference(Aspect.BOUNDS, f"{actual.name} is {actual.type}, it should be {expected.type}")
+            yield self._difference(Aspect.BOUNDS, f"{actual.name} is {actual.type}, but it should be {expected.type}")
         if expected.default != actual.default and not (expected.default is None and not actual.default):
             actual_text = "no default" if actual.default is None else f"the default {actual.default!r}"
             expected_text = "none" if expected.default is None else repr(expected.default)
-            yield self._difference(Aspect.DEFAULTS, f"{actual.name} has {actual_text}, it should be {expected_text}")
+            yield self._difference(
+                Aspect.DEFAULTS, f"{actual.name} has {actual_text}, but it should be {expected_text}"
+            )
 
     def _constants(self) -> Iterator[Difference]:
         constants = {constant.name: constant for constant in self._actual.constants}
@@ -207,16 +211,16 @@ class _Comparison:
             if actual is not None:
                 if (actual.type, actual.value) != (expected.type, expected.value):
                     texts = [f"{constant.type} {constant.value!r}" for constant in (actual, expected)]
-                    sentence = f"the constant {name} is {texts[0]}, it should be {texts[1]}"
+                    sentence = f"the constant {name} is {texts[0]}, but it should be {texts[1]}"
                     yield self._difference(Aspect.CONSTANTS, sentence)
             elif name in self._actual_part:
                 part = self._actual_part[name]
-                yield self._difference(Aspect.CONSTANTS, f"the constant {name} is in the {part}, it belongs here")
+                yield self._difference(Aspect.CONSTANTS, f"the constant {name} is in the {part}, but it belongs here")
             elif name.lower() in fields:
                 sentence = f"{name.lower()} is a field; a constant is written {expected.type} {name} = VALUE"
                 yield self._difference(Aspect.CONSTANTS, sentence)
             elif near := nearest(name, extra, _NEAR):
-                yield self._difference(Aspect.CONSTANTS, f"a constant is called {near}, it should be {name}")
+                yield self._difference(Aspect.CONSTANTS, f"a constant is called {near}, but it should be {name}")
             else:
                 yield self._difference(Aspect.CONSTANTS, f"the constant {name} is missing")
 
@@ -247,8 +251,8 @@ def _plain(value: Any) -> Any:
 def _reason(error: Exception) -> str:
     """Describe an exception of the parser. Some have no text, or only the line of the definition."""
     advice = {
-        "InvalidServiceSpecification": "one line --- parts the request from the response",
-        "InvalidActionSpecification": "two lines --- part goal, result and feedback",
+        "InvalidServiceSpecification": "one line --- separates the request from the response",
+        "InvalidActionSpecification": "two lines --- separate goal, result and feedback",
     }.get(type(error).__name__, "a field is written `type name`, a constant `type NAME = value`")
     text = str(error).strip()
     return f"{text} ({advice})" if text else advice

@@ -63,11 +63,11 @@ def expect_argument(arguments: Mapping[str, Argument], name: str, default: str, 
     expect(name in arguments, f"The launch file declares no argument {name}; it declares: {names}.")
     argument = arguments[name]
     actual = "no default" if argument.default is None else f"the default {argument.default!r}"
-    is_right = argument.default == default or argument.is_computed
-    expect(is_right, f"The argument {name} has {actual}, instead of {default!r}.", fraction=0.5)
+    is_correct = argument.default == default or argument.is_computed
+    expect(is_correct, f"The argument {name} has {actual}, instead of {default!r}.", fraction=0.5)
     expect(
         bool(argument.description) or not described,
-        f"The argument {name} has no description: `ros2 launch -s` would not say what it is for.",
+        f"The argument {name} has no description: `ros2 launch -s` would not show its purpose.",
         fraction=0.5,
     )
 
@@ -100,14 +100,14 @@ def expect_nodes(harness: LaunchHarness, expected: Collection[str]) -> None:
     nodes = settle(harness, expected)
     if nodes == sorted(expected):
         return
-    summary = f"The graph holds {', '.join(nodes)}" if nodes else "No node is up"
+    summary = f"The graph contains {', '.join(nodes)}" if nodes else "No node is running"
     missing = sorted((Counter(expected) - Counter(nodes)).elements())
     extra = sorted((Counter(nodes) - Counter(expected)).elements())
-    differences = [f"{', '.join(missing)} missing"] if missing else []
-    differences += [f"{', '.join(extra)} not asked for"] if extra else []
+    differences = [f"missing: {', '.join(missing)}"] if missing else []
+    differences += [f"not expected: {', '.join(extra)}"] if extra else []
     near = [f"{other} runs instead of {name}" for name in missing for other in extra if _base(name) == _base(other)]
     reason = failure(harness.output)
-    parts = [f"{summary}: {'; '.join(near or differences)}.", reason and f"What the launch said: {reason}"]
+    parts = [f"{summary}: {'; '.join(near or differences)}.", reason and f"The launch reported: {reason}"]
     raise CheckFailed(" ".join(filter(None, parts)))
 
 
@@ -250,7 +250,7 @@ def with_files(
         programs: the new text of each executable, by its name.
     """
     root = workspace.root.with_name(f"{workspace.root.name}-{name}")  # not in scratch, where students' code may write
-    with reading("What colcon installed"):
+    with reading("The files that colcon installed"):
         shutil.copytree(workspace.install, root / "install", symlinks=True)
     prefix = root / "install" / package
     texts = {prefix / "share" / package / path: (text, 0o644) for path, text in files.items()}
@@ -269,4 +269,4 @@ def _base(name: str) -> str:
 
 
 def _last_line(output: str) -> str:
-    return next((line.strip() for line in reversed(output.splitlines()) if line.strip()), "it says nothing")
+    return next((line.strip() for line in reversed(output.splitlines()) if line.strip()), "it printed nothing")

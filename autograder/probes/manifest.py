@@ -32,8 +32,8 @@ class Manifest:
     format: int
     licences: tuple[str, ...]  # each <license>, as written
     maintainers: tuple[tuple[str, str], ...]  # each (name, e-mail)
-    build_type: str  # the text of <build_type> in <export>; without it, ROS takes the package for an old CMake one
-    depends: Mapping[str, frozenset[str]]  # names by kind, if their condition is true in this ROS
+    build_type: str  # the text of <build_type> in <export>; without it, ROS treats it as an old CMake package
+    depends: Mapping[str, frozenset[str]]  # names by kind, of those whose condition is true in this ROS
     groups: frozenset[str]  # the dependency groups
 
     def needs(self, *kinds: str) -> frozenset[str]:
@@ -115,7 +115,7 @@ def parse(text: str, file_name: str = MANIFEST) -> Manifest:
 def _refuse_unsafe(text: str, file_name: str) -> None:
     if STILL_TO_BE_WRITTEN in text:
         raise CheckFailed(f"{file_name} is still to be written.")
-    # No manifest needs a document type, and one can make a small file huge.
+    # No manifest needs a document type, whose entities can expand a small file to a huge one.
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         raise CheckFailed(f"{file_name} has a <!DOCTYPE> or <!ENTITY>, which no manifest needs.")
 
@@ -124,7 +124,7 @@ def _parse_tags(root: ElementTree.Element) -> Manifest:
     def texts(tag: str) -> tuple[str, ...]:
         return tuple(" ".join("".join(element.itertext()).split()) for element in root.findall(tag))
 
-    depend_kinds = ("build", "build_export", "exec")  # the kinds that <depend> stands for
+    depend_kinds = ("build", "build_export", "exec")  # the kinds that a <depend> declares
     format_text = root.get("format", "1")
     return Manifest(
         name="".join(texts("name")[:1]),

@@ -34,5 +34,5 @@ def missing_in_namespace(
         return difference
     return (
         f"Started in the namespace {NAMESPACE}, {executable} has no {' and no '.join(absent)}: "
-        "a relative name has no slash."
+        "a relative name does not begin with a slash."
     )

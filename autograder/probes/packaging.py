@@ -32,12 +32,12 @@ def expect_same_facts(installed: Installed, manifest: Manifest, fraction: float 
         ("licence", licence(installed), list(manifest.licences)),
         ("maintainer's e-mail", address, emails),
     )
-    wrong = [(label, value, allowed) for label, value, allowed in facts if not value or value not in allowed]
+    differences = [(label, value, allowed) for label, value, allowed in facts if not value or value not in allowed]
     clauses = "; ".join(
         f"the {label} is {value or 'missing'} in setup.py, {', '.join(allowed)} in package.xml"
-        for label, value, allowed in wrong
+        for label, value, allowed in differences
     )
-    expect(not wrong, f"The two files differ: {clauses}.", fraction=fraction)
+    expect(not differences, f"The two files differ: {clauses}.", fraction=fraction)
 
 
 def expect_installs_itself(installed: Installed) -> None:
@@ -46,8 +46,8 @@ def expect_installs_itself(installed: Installed) -> None:
     missing = [str(path) for path in required if str(path) not in installed.recorded]
     expect(
         not missing,
-        f"setup.py does not install {' and '.join(missing)}. colcon still does it for you, and warns that it will not "
-        "for ever.",
+        f"setup.py does not install {' and '.join(missing)}. colcon still does it for you, but warns that "
+        "it will not do so for ever.",
         fraction=0.5 * (2 - len(missing)),
     )
 
@@ -56,8 +56,8 @@ def expect_pytest(workspace: Workspace, installed: Installed, fraction: float = 
     """Fail the check unless setup.py names pytest in a way that `colcon test` recognises."""
     expect(
         runs_pytest(workspace, installed),
-        "`colcon test` does not run pytest for this package, because setup.py does not name pytest for its tests: "
-        "extras_require={'test': ['pytest']} names it.",
+        "`colcon test` does not run pytest for this package, because setup.py does not require pytest for its "
+        "tests: add extras_require={'test': ['pytest']}.",
         fraction=fraction,
     )
 
@@ -67,18 +67,18 @@ def wrong_for_interfaces(manifest: Manifest, uses: Mapping[str, str]) -> list[st
 
     `uses` maps each package that its definitions use to the name of such a definition.
     """
-    wrong = []
+    mistakes = []
     if manifest.build_type != "ament_cmake":
-        wrong.append(f"the build type is {manifest.build_type or 'not given'}, it should be ament_cmake")
+        mistakes.append(f"the build type is {manifest.build_type or 'not given'}, but it should be ament_cmake")
     for tool in ("ament_cmake", GENERATORS):
         if tool not in manifest.needs("buildtool"):
-            advice = f", but a build tool: the tag is <buildtool_depend>{tool}</buildtool_depend>"
-            wrong.append(f"{tool} is {f'there{advice}' if tool in manifest.needs() else 'missing'}")
+            advice = f", but it is a build tool: the tag is <buildtool_depend>{tool}</buildtool_depend>"
+            mistakes.append(f"{tool} is {f'declared{advice}' if tool in manifest.needs() else 'missing'}")
     if RUNTIME not in manifest.needs("exec"):
-        wrong.append(f"there is no <exec_depend>{RUNTIME}</exec_depend>, which users of the interfaces need")
+        mistakes.append(f"there is no <exec_depend>{RUNTIME}</exec_depend>, which users of the interfaces need")
     if INTERFACE_GROUP not in manifest.groups:
-        wrong.append(f"there is no <member_of_group>{INTERFACE_GROUP}</member_of_group>")
+        mistakes.append(f"there is no <member_of_group>{INTERFACE_GROUP}</member_of_group>")
     for package, user in uses.items():
         if package not in manifest.needs("build") & manifest.needs("exec"):
-            wrong.append(f"{package}, which {user} uses, is not declared by <depend>")
-    return wrong
+            mistakes.append(f"{package}, which {user} uses, is not declared by <depend>")
+    return mistakes

@@ -98,7 +98,7 @@ class NodeParameters:
         if response is not None:
             return response
         if not self.harness.node.count_services(service):
-            raise CheckFailed(f"The node has no service {service}: leave its parameter services on.")
+            raise CheckFailed(f"The node has no service {service}: keep its parameter services enabled.")
         raise CheckFailed(f"The node did not answer a request to {service} within {TIMEOUT:.0f} s.")
 
 
@@ -193,7 +193,9 @@ def read_file(path: Path) -> dict[str, dict[str, Value]]:
         except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: PyYAML takes 2026-13-01 for a date
             raise CheckFailed(f"{path.name} is not YAML: {shortened(reason(error))}.") from None
         if not isinstance(file, dict):
-            raise CheckFailed(f"{path.name} names no node: it begins with a node's name or with /**, and a colon.")
+            raise CheckFailed(
+                f"{path.name} does not name a node: begin it with a node's name or with /**, and a colon."
+            )
         return {str(node): _values(path.name, shortened(str(node)), below) for node, below in file.items()}
 
 
@@ -205,18 +207,20 @@ def for_node(file: Mapping[str, Mapping[str, Value]], name: str) -> dict[str, Va
 
 def _values(file: str, node: str, below: object) -> dict[str, Value]:
     if node == "ros__parameters":
-        raise CheckFailed(f"In {file}, ros__parameters is at the left margin: it belongs below a node, indented.")
+        raise CheckFailed(f"In {file}, ros__parameters is at the left margin: indent it below a node's name.")
     if not isinstance(below, dict) or not below:
         raise CheckFailed(f"In {file}, nothing is below {node}: indent ros__parameters under it.")
     if set(below) != {"ros__parameters"}:
-        others = _join_names(name for name in below if name != "ros__parameters")
-        raise CheckFailed(f"In {file}, {others} is directly below {node}: ROS reads what is below ros__parameters.")
+        other_names = _join_names(name for name in below if name != "ros__parameters")
+        raise CheckFailed(
+            f"In {file}, {other_names} is directly below {node}: ROS only reads the values below ros__parameters."
+        )
     values = below["ros__parameters"]
     if not isinstance(values, dict) or not values:
         raise CheckFailed(f"In {file}, {node} has no values: indent them under its ros__parameters.")
     for name, value in values.items():
         if excess := beyond_bounds(value):
-            raise CheckFailed(f"In {file}, {shortened(str(name))} is a {excess}, which ROS cannot hold.")
+            raise CheckFailed(f"In {file}, {shortened(str(name))} is a {excess}, which ROS cannot store.")
     return {str(name): value for name, value in values.items()}
 
 

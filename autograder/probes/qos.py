@@ -20,5 +20,6 @@ def non_default_qos(node: Node, *topics: str) -> str:
                 if peer.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
                     policy = "transient local"
                 if policy:
-                    return f"The {kind} on {topic} is {policy}: a queue of 10 and no more is reliable and volatile."
+                    advice = "with only a queue length, such as 10, it is reliable and volatile"
+                    return f"The {kind} on {topic} is {policy}: {advice}."
     return ""

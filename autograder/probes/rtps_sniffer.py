@@ -37,7 +37,7 @@ class RtpsSniffer:
             self.domain = domain
             self._sockets = (first, _join_group(base))
             return
-        sentence = f"Programs are in all DDS domains from {DOMAINS[0]} to {DOMAINS[-1]}: end those that you start."
+        sentence = f"All DDS domains from {DOMAINS[0]} to {DOMAINS[-1]} are in use: end the programs that you started."
         raise DoubtfulError(Diagnosis(Kind.STUCK, sentence))
 
     def take_announcements(self) -> bool:

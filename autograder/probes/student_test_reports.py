@@ -100,11 +100,14 @@ class Report:
         bad = (ClaimedOutcome.FAILED, ClaimedOutcome.ERROR)
         return tuple(name for name, verdict in self.claims.verdicts.items() if verdict in bad)
 
-    def detects_fault(self, right: Report) -> bool:
-        """Return whether a test that passed on a right version failed here. An unreadable file does not count."""
-        if self.source_tests is not None and right.source_tests is None:
-            right = right.closed(self.source_tests)
-        return self.status == 1 and bool(set(self.failed) & set(right.executed) - set(right.failed))
+    def detects_fault(self, correct_report: Report) -> bool:
+        """Return whether any test that passed on a correct version fails in this report.
+
+        A test file that cannot be imported does not count.
+        """
+        if self.source_tests is not None and correct_report.source_tests is None:
+            correct_report = correct_report.closed(self.source_tests)
+        return self.status == 1 and bool(set(self.failed) & set(correct_report.executed) - set(correct_report.failed))
 
     def failed_in(self, other: Report) -> tuple[str, ...]:
         """Return the tests of this report that fail in another one. Only the other one may be closed."""

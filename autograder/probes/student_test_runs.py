@@ -3,7 +3,7 @@
     source = read_source(workspace, "wheels")
     reports = run(workspace, source, [TestRun(("test_limits.py",), right), TestRun(("test_limits.py",), faulty)])
 
-The student's tests control a run: it claims "passes" or "fails", and earns points if the claim is right for each
+The student's tests control a run: it claims "passes" or "fails", and earns points if the claim is correct for each
 version. So a run must not be able to recognise its version. Every run has a sandbox with a separate loopback, a random
 path, the same times and environment, and no writable folder except a temporary /tmp. It can read its version, but not
 the others, the suites or earlier runs. `versions` explains how versions are made indistinguishable, and the remaining
@@ -59,7 +59,7 @@ def read_source(workspace: Workspace, package: str) -> Source:
         (e.path.parent for e in entries if e.path.name == "package.xml" and e.path.parent.name == package), None
     )
     if folder is None:
-        sentence = f"There is no folder src/{package} with a package.xml: a package's folder has its name."
+        sentence = f"There is no folder src/{package} with a package.xml: name the folder after the package."
         raise StudentError(Diagnosis(Kind.MISSING_PACKAGE, sentence))
     package_entries = [entry for entry in entries if entry.path.is_relative_to(folder)]
     return Source(package, {entry.path.relative_to(folder).as_posix(): entry.data for entry in package_entries})
@@ -76,7 +76,7 @@ def run(workspace: Workspace, source: Source, test_runs: Sequence[TestRun]) -> l
         StudentError: the disk is full.
         GraderError: all domains for sniffed runs are in use.
     """
-    record_data("What your tests reported")
+    record_data("The report of your tests")
     with ThreadPoolExecutor(JOBS) as pool:
         run_once = partial(_run, workspace, source)
         reports = list(pool.map(run_once, test_runs))
@@ -105,35 +105,37 @@ def sandboxed(workspace: Workspace, *readable: Path, limits: Limits = TEST_RUN, 
 
 def _run(workspace: Workspace, source: Source, test_run: TestRun) -> Report:
     try:
-        with TemporaryDirectory(prefix="tests-", dir=workspace.root.parent, ignore_cleanup_errors=True) as place:
+        with TemporaryDirectory(prefix="tests-", dir=workspace.root.parent, ignore_cleanup_errors=True) as run_folder:
             if current_isolation() is Isolation.BUBBLEWRAP:
-                return _run_in(Path(place), workspace, source, test_run)
+                return _run_in(Path(run_folder), workspace, source, test_run)
             with Domain() as domain:  # at this isolation level, all runs share one network
-                return _run_in(Path(place), replace(workspace, domain=domain.number), source, test_run)
+                return _run_in(Path(run_folder), replace(workspace, domain=domain.number), source, test_run)
     except OSError as error:
         if error.errno not in (errno.ENOSPC, errno.EDQUOT):
-            with reading(f"The package {source.package}", advice="A folder has the name of a file, or the reverse."):
+            with reading(f"The package {source.package}", advice="A folder has the name of a file, or vice versa."):
                 raise
-        sentence = "There was no room left on the disk for your tests: what fills it, the package or the build?"
+        sentence = "The disk is full, so your tests could not run: make the files of the package or its build smaller."
         raise StudentError(Diagnosis(Kind.OUT_OF_MEMORY, sentence)) from None
 
 
-def _run_in(place: Path, workspace: Workspace, source: Source, test_run: TestRun) -> Report:
+def _run_in(run_folder: Path, workspace: Workspace, source: Source, test_run: TestRun) -> Report:
     if test_run.version is not None:
-        tested = replace(workspace, root=place / "ws")
-        folder = write_version(test_run.version, source.package, source.tests, tested.root)
+        tested_workspace = replace(workspace, root=run_folder / "ws")
+        folder = write_version(test_run.version, source.package, source.tests, tested_workspace.root)
     else:
-        tested, folder = workspace, place / "ws" / "src" / source.package
+        tested_workspace, folder = workspace, run_folder / "ws" / "src" / source.package
         for name, data in source.files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
     launches = _launches(source, test_run)
     arguments = _arguments(source, folder, test_run, launches)
     if not test_run.sniffed:
-        report = _start_pytest(_sandbox_of(tested, folder, test_run, place / "home"), test_run, arguments, launches)
+        report = _start_pytest(
+            _sandbox_of(tested_workspace, folder, test_run, run_folder / "home"), test_run, arguments, launches
+        )
     else:
         with RtpsSniffer() as sniffer:
-            spec = _sandbox_of(replace(tested, domain=sniffer.domain), folder, test_run, place / "home")
+            spec = _sandbox_of(replace(tested_workspace, domain=sniffer.domain), folder, test_run, run_folder / "home")
             report = _start_pytest(spec, test_run, arguments, launches)
             report = replace(report, joined_domain=sniffer.take_announcements())
     is_secret = test_run.version is not None and not test_run.is_public

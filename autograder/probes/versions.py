@@ -3,12 +3,12 @@
 A test could report the expected result without running a version, if it recognised the version by the text of a file,
 its hash or byte code, or by names, paths or times. So `obfuscate` rewrites every version, including the reference: it
 removes comments and draws new docstrings, local names and private attributes in each run. Each docstring is then a leak
-marker, and so is the last comment of a file: nothing that a student gets may contain one (`verification.leaks`). Right
-and faulty versions in different styles are mixed in an order drawn from the seed. All have the same files, with the
-same times.
+marker, and so is the last comment of a file: nothing that a student gets may contain one (`verification.leaks`).
+Correct and faulty versions in different styles are mixed in an order drawn from the seed. All have the same files, with
+the same times.
 
 A test may still read the code of a version as a linter does, and find the fault there: that is allowed. A test that
-fails at random does not help, because it has to pass on every right version, and more than once.
+fails at random does not help, because it has to pass on every correct version, and more than once.
 """
 
 from __future__ import annotations

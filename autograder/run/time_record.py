@@ -41,13 +41,13 @@ class TimeRecord:
     def explain(self) -> str:
         """Return sentences that say which programs were not stepped, and why, or an empty string if all were."""
         sentences = [
-            f"{name} ran in real time, because {UNSTEPPABLE.get(reason, 'that was asked for')}."
+            f"{name} ran in real time, because {UNSTEPPABLE.get(reason, 'this was requested')}."
             for name, reason in sorted(self.real_time.items())
             if reason
         ]
         other_programs = ", ".join(sorted(name for name, reason in self.real_time.items() if not reason))
         return " ".join(
-            [*sentences, f"What runs beside it ran in real time, too: {other_programs}."]
+            [*sentences, f"Programs that run alongside it also ran in real time: {other_programs}."]
             if other_programs
             else sentences
         )

@@ -56,17 +56,15 @@ class Workspace:
         if path.is_file():
             return path
         if not (self.install / package).is_dir():
-            sentence = (
-                f"The package {package} was not built, so it has no program {name}: read first what the build says."
-            )
+            sentence = f"The package {package} was not built, so it has no program {name}: look at the build first."
             raise StudentError(Diagnosis(Kind.MISSING_EXECUTABLE, sentence))
         names = sorted(entry.name for entry in folder.iterdir() if entry.is_file()) if folder.is_dir() else []
-        installed = f"what it installs is {', '.join(names)}" if names else "it installs none at all"
+        installed = f"it installs {', '.join(names)}" if names else "it installs none"
         raise StudentError(
             Diagnosis(
                 Kind.MISSING_EXECUTABLE,
                 f"The package {package} installs no program {name}; {installed}. Is the name misspelt? The names are "
-                "in console_scripts in setup.py, and the programs' folder in setup.cfg.",
+                "in console_scripts in setup.py, and the programs' folder is in setup.cfg.",
             )
         )
 

@@ -42,7 +42,7 @@ def read_package(manifest: Path, label: str = "") -> Package:
         data = manifest.read_bytes()
         # UTF-16 has null bytes. The entities of a document type can expand a small file to 8 MB.
         if b"<!DOCTYPE" in data.replace(b"\0", b""):
-            raise _manifest_error(f"{label} has a <!DOCTYPE>, which no manifest needs: take it out.")
+            raise _manifest_error(f"{label} has a <!DOCTYPE>, which no manifest needs: remove it.")
         try:
             root = ET.fromstring(data)
         except ET.ParseError as error:
@@ -77,7 +77,7 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
             package = read_package(folder / MANIFEST, label)
             if os.path.lexists(folder / COLCON_PKG):  # it can override the name in the manifest
                 raise _manifest_error(
-                    f"{label} has a {COLCON_PKG} beside it, which no package of ROS needs: take it out."
+                    f"{label} has a {COLCON_PKG} beside it, which no package of ROS needs: remove it."
                 )
         except StudentError as error:
             broken[folder] = error.diagnosis.sentence
@@ -85,11 +85,11 @@ def read_packages(source: Path) -> tuple[dict[str, Package], dict[Path, str]]:
         if (other := packages.get(package.name)) is not None:
             paths = " and ".join(f"src/{path.relative_to(source)}" for path in (other.folder, folder))
             raise _manifest_error(
-                f"{paths} are two packages with the name {package.name}: colcon builds neither. Take one out."
+                f"{paths} are two packages with the name {package.name}: colcon builds neither. Remove one."
             )
         packages[package.name] = package
         if len(packages) > MAX_PACKAGES:
-            raise _manifest_error(f"src contains more than {MAX_PACKAGES} packages: take out those that are not yours.")
+            raise _manifest_error(f"src contains more than {MAX_PACKAGES} packages: remove those that are not yours.")
     return packages, broken
 
 

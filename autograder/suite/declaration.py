@@ -226,7 +226,9 @@ def check_each_row(check: Declare, rows: Iterable[R]) -> Callable[[F], F]:
 
     def declare_each(body: F) -> F:
         if body.__name__.startswith("test"):
-            raise GraderError(f"body {body.__name__!r}: its name must not start with 'test', its checks' names do")
+            raise GraderError(
+                f"body {body.__name__!r}: its name must not start with 'test', because its checks' names do"
+            )
         for row in rows:
             declare = check(points=row.points, covers=row.covers, doc=row.doc)
             body.__globals__[PREFIX + row.id] = declare(hint(*row.hints)(_with_row(body, row)))

@@ -27,8 +27,8 @@ Case = TypeVar("Case")
 # Hypothesis would also draw constants from all modules that are loaded. The cases would then depend on these modules,
 # and reading them takes half a second.
 providers._get_local_constants = lambda: providers._local_constants
-# Attempts to draw a simpler case: at most so many, and so many for each case that the check draws. A check that draws
-# few, because each takes long or the program runs in real time, does not spend a submission's time on shrinking.
+# The maximum number of attempts to draw a simpler case: in total, and for each case that the check draws. A check that
+# draws few cases, because each takes long, does not spend a submission's time on shrinking.
 SHRINKS, SHRINKS_PER_CASE = 200, 5
 
 

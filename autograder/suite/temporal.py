@@ -48,7 +48,7 @@ def always(condition: str, times: Sequence[float], signals: Mapping[str, Sequenc
         rtamt.RTAMTException: the formula is malformed.
         CheckFailed: the trace has fewer than two samples, for example because a program sent nothing.
     """
-    expect(len(times) > 1, "Fewer than two messages came, so nothing could be judged.")
+    expect(len(times) > 1, "Fewer than two messages were received, so this check could not be evaluated.")
     specification = rtamt.StlDiscreteTimeSpecification()
     for name in signals:
         specification.declare_var(name, "float")

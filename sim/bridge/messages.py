@@ -142,7 +142,7 @@ def twist_to_command(msg: Any) -> Command:
     twist = msg.twist if isinstance(msg, TwistStamped) else msg
     linear, angular = twist.linear.x, twist.angular.z
     if not (math.isfinite(linear) and math.isfinite(angular)):
-        raise ValueError(f"a command of {linear} m/s and {angular} rad/s is not finite; the robot can't obey it")
+        raise ValueError(f"a command of {linear} m/s and {angular} rad/s is not finite; the robot can't execute it")
     return Command(linear=linear, angular=angular)
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sim.engine import motion
 from sim.engine.exact import ERROR_BOUND
 from sim.engine.loops import SMALL, wall_into
-from sim.engine.motion import advance_near
+from sim.engine.motion import advance_near_obstacles
 from sim.engine.pairs import LIMIT, NOTHING, TANGENT, TOUCHING, circle_inverse, wall_hit
 from sim.engine.readings import STRENGTH
 from sim.engine.shapes import FAR, gap
@@ -25,7 +25,15 @@ from sim.engine.trig import TAU, sincos
 Floats = NDArray[np.float64]
 Float32s = NDArray[np.float32]
 
-__all__ = ["advance_free", "advance_near", "beam_ranges", "gap", "nearest", "scan_ranges", "to_readings"]
+__all__ = [
+    "advance_near_obstacles",
+    "advance_unobstructed",
+    "beam_ranges",
+    "gap",
+    "nearest",
+    "scan_ranges",
+    "to_readings",
+]
 
 # An upper bound, with a wide margin, on the error of numpy's arctan2 and the arithmetic after it, in radians.
 BEARING_ERROR = 1e-12
@@ -237,10 +245,10 @@ def to_readings(
     return result, returns
 
 
-def advance_free(
+def advance_unobstructed(
     robot: Floats, v: float, w: float, ticks: int, dt: float, limits: Floats, drift: Floats, noise: Floats
 ) -> None:
-    """Call `motion.advance_free` with lists, whose items Python reads faster than those of arrays."""
+    """Call `motion.advance_unobstructed` with lists, whose items Python reads faster than those of arrays."""
     numbers: Any = robot.tolist()
-    motion.advance_free(numbers, v, w, ticks, dt, limits.tolist(), drift.tolist(), noise.tolist())
+    motion.advance_unobstructed(numbers, v, w, ticks, dt, limits.tolist(), drift.tolist(), noise.tolist())
     robot[:] = numbers

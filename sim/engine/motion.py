@@ -74,7 +74,7 @@ def measure(robot: Floats, ds: float, turn: float, drift: Floats, noise: Floats)
         robot[13] = tt + r
 
 
-def advance_free(
+def advance_unobstructed(
     robot: Floats, v: float, w: float, ticks: int, dt: float, limits: Floats, drift: Floats, noise: Floats
 ) -> None:
     """Advance `robot` by `ticks` ticks of `dt` seconds towards the speeds v and w, if no obstacle is near.
@@ -134,7 +134,7 @@ def sweep(
     return 1.0
 
 
-def advance_near(
+def advance_near_obstacles(
     robot: Floats,
     v: float,
     w: float,

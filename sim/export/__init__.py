@@ -86,8 +86,8 @@ def export(recording: Recording, path: str | Path, **options: float) -> Path:
     path = Path(path)
     write = writers.get(path.suffix.lower())
     if write is None:
-        suffix = path.suffix or "a name without an ending"
-        raise ExportError(f"{path}: can't export to {suffix!r}: use .gif, .mp4, .html or .mcap")
+        suffix = repr(path.suffix) if path.suffix else "a name without a suffix"
+        raise ExportError(f"{path}: can't export to {suffix}: use .gif, .mp4, .html or .mcap")
     if options and path.suffix.lower() not in videos:
         raise ExportError(f"{path}: only a .gif or .mp4 has {' and '.join(sorted(options))}: leave it out")
     return write(recording, path, **options)

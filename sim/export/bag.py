@@ -32,7 +32,7 @@ def write_bag(recording: Recording, path: Path) -> Path:
         raise ExportError("a rosbag2 needs the library 'rosbags': pip install 'ros2-python-course[export]'") from None
     folder = path.with_suffix("") if path.suffix == ".mcap" else path
     if folder.exists():
-        raise ExportError(f"{folder}: there is something already: remove it, or give another name")
+        raise ExportError(f"{folder}: it already exists: remove it, or choose another name")
     store = get_typestore(Stores.LATEST)  # these messages are the same in each distribution since ROS 2 Foxy
     infinite_time = QosTime(2147483647, 4294967295)
 

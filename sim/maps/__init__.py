@@ -48,7 +48,7 @@ def load_map(
 
     Args:
         path: the path of the YAML file.
-        starts: the start poses of robots, by default the centre of the largest free place.
+        starts: the start poses of robots, by default the centre of the largest free square.
         goals: places to reach.
         tolerance: the distance in metres by which an outline may be moved to simplify it; 0 keeps it exact.
 
@@ -63,11 +63,11 @@ def load_map(
     edges = count_edges(occupied)
     if edges == 0:
         raise WorldError(
-            "no cell is a wall", "Look at the picture, 'negate' and 'occupied_thresh'", path=str(map_file.image)
+            "no cell is a wall", "Check the picture, 'negate' and 'occupied_thresh'", path=str(map_file.image)
         )
     if edges > MAX_EDGES:
         raise WorldError(
-            f"an outline of {edges:,} edges is no floor plan",
+            f"an outline of {edges:,} edges is not a floor plan",
             f"Clean the picture or scale it down to {MAX_EDGES:,} or less",
             path=str(map_file.image),
         )
@@ -100,8 +100,8 @@ def _roomiest_start(map_file: MapFile, free: npt.NDArray[np.bool_]) -> tuple[Pos
     point = roomiest_point(free)
     if point is None:
         raise WorldError(
-            "no cell is free: there is no place for a robot",
-            "Look at the picture and at 'free_thresh'",
+            "no cell is free: there is no room for a robot",
+            "Check the picture and 'free_thresh'",
             path=str(map_file.image),
         )
     x, y = _to_map(map_file, np.array([point]))[0]

@@ -72,7 +72,7 @@ def _read_pgm(path: Path, data: bytes) -> npt.NDArray[np.float64]:
         body, size = data[header.end() :], width * height * sample.itemsize
         if len(body) < size:
             raise _error(
-                path, f"the PGM is cut short: it needs {size} bytes of pixels, it has {len(body)}", _SAVE_AGAIN
+                path, f"the PGM is cut short: it needs {size} bytes of pixels, but has {len(body)}", _SAVE_AGAIN
             )
         values = np.frombuffer(body, dtype=sample, count=width * height).astype(np.float64)
     if values.max() > max_value:
@@ -83,7 +83,7 @@ def _read_pgm(path: Path, data: bytes) -> npt.NDArray[np.float64]:
 def _plain_values(path: Path, body: bytes, count: int) -> npt.NDArray[np.float64]:
     tokens = re.sub(rb"#[^\n]*", b"", body).split()
     if len(tokens) < count:
-        raise _error(path, f"the PGM is cut short: {count} pixels announced, {len(tokens)} there", _SAVE_AGAIN)
+        raise _error(path, f"the PGM is cut short: it needs {count} pixels, but has {len(tokens)}", _SAVE_AGAIN)
     for token in tokens[:count]:
         if not (token.isdigit() and len(token) < 7):
             raise _error(

@@ -48,13 +48,15 @@ def read_map_file(path: Path) -> MapFile:
         raise fields.error("mode", f"the mode {mode!r} is unknown", f"Choose one of {', '.join(MODES)}")
     resolution = fields.number("resolution")
     if not 1e-4 <= resolution <= 100.0:
-        raise fields.error("resolution", f"a cell of {resolution:g} m makes no map", "Give metres a cell, like 0.05")
+        raise fields.error(
+            "resolution", f"a cell of {resolution:g} m is not usable", "Give metres per cell, such as 0.05"
+        )
     occupied_thresh, free_thresh = fields.share("occupied_thresh"), fields.share("free_thresh")
     if free_thresh >= occupied_thresh:
         raise fields.error(
             "free_thresh",
             f"free_thresh {free_thresh:g} is not below occupied_thresh {occupied_thresh:g}",
-            "Lower it, 0.25 is usual",
+            "Lower it; 0.25 is usual",
         )
     negate = fields.text("negate").lower()
     if negate not in ("0", "1", "true", "false"):
@@ -111,7 +113,7 @@ class _Fields:
             name = key.value if isinstance(key, yaml.ScalarNode) else "?"
             if name in self._nodes:
                 raise WorldError(
-                    f"{name!r} is there twice", "Keep one", path=str(path), line=int(key.start_mark.line) + 1
+                    f"{name!r} occurs twice", "Keep one", path=str(path), line=int(key.start_mark.line) + 1
                 )
             self._nodes[name] = value
 
@@ -123,7 +125,7 @@ class _Fields:
         missing_keys = [key for key in keys if key not in self._nodes]
         if missing_keys:
             raise self.error(
-                "", f"{', '.join(repr(key) for key in missing_keys)} missing", "Add it, as map_server wants it"
+                "", f"{', '.join(repr(key) for key in missing_keys)} missing", "Add it, because map_server requires it"
             )
 
     def text(self, key: str, default: str = "") -> str:
@@ -131,7 +133,7 @@ class _Fields:
         if node is None:
             return default
         if not isinstance(node, yaml.ScalarNode) or not node.value.strip() or "\0" in node.value:
-            raise self.error(key, f"{key!r} is not one value", "Write one value behind the colon")
+            raise self.error(key, f"{key!r} is not one value", "Write one value after the colon")
         return str(node.value).strip()
 
     def number(self, key: str) -> float:
@@ -157,5 +159,5 @@ class _Fields:
         except ValueError:
             raise self.error(key, f"{text[:40]!r} of {key!r} is not a number", "Write a plain number") from None
         if not math.isfinite(value) or abs(value) > 1e6:
-            raise self.error(key, f"{text[:40]} of {key!r} is no usable number", "Write one within a million")
+            raise self.error(key, f"{text[:40]} of {key!r} is not a usable number", "Write one within a million")
         return value

@@ -1,4 +1,4 @@
-"""The widget of the live view: what the page shows, and what its buttons and keys ask for.
+"""The widget of the live view: what the page shows, and the requests of its buttons and keys.
 
 The page is written in JavaScript, with the drawing of the player (`live.js`). It can zoom, pan and follow a robot while
 the kernel is busy. Everything else is a message to the kernel, which answers with a new frame.
@@ -49,8 +49,8 @@ class Actions(Protocol):
 class Controls(anywidget.AnyWidget):
     """What the page shows, as traits, and a handler for its messages.
 
-    `run` and `frame` are the results of `sim.view.live_data`. `driver` says who drives the first robot, and `error` is
-    the text of the callback's exception, or "".
+    `run` and `frame` are the results of `sim.view.live_data`. `driver` tells what drives the first robot, and `error`
+    is the text of the callback's exception, or "".
     """
 
     _esm = script_of("live_scan", "live")
@@ -78,7 +78,7 @@ class Controls(anywidget.AnyWidget):
         self.driver = text if len(names) == 1 else f"{names[0]}: {text}"
 
     def handle(self, message: dict[str, Any]) -> None:
-        """Do what the page asks for. `forward` and `left` are -1, 0 or 1."""
+        """Execute a request of the page. `forward` and `left` are -1, 0 or 1."""
         actions = self._actions
         match message:
             case {"action": "play"}:

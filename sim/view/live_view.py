@@ -66,7 +66,7 @@ def live(
         ValueError: the speed or the theme is invalid, or the source does not accept a callback.
     """
     if not 0.0 < speed <= 100.0:
-        raise ValueError(f"a speed of {speed} makes no sense: give a factor above 0 and up to 100, 1 is real time")
+        raise ValueError(f"a speed of {speed} makes no sense: give a factor above 0 and up to 100; 1 is real time")
     colours = theme_named(theme)
     if grading():
         return _still_picture(source, colours)

@@ -103,6 +103,6 @@ def to_json() -> str:
         "pointer": POINTER,
         "beams": BEAMS,
         "pieces": PIECES,
-        "others": len(LIGHT.others),
+        "others": len(LIGHT.other_colours),
     }
     return json.dumps(look, separators=(",", ":"))

@@ -46,7 +46,8 @@ class Picture:
         path = Path(path)
         kind = path.suffix.lower()
         if kind not in (".png", ".svg"):
-            raise ValueError(f"{path}: a picture is saved as .png or .svg, not {kind or 'without an ending'!r}")
+            suffix = repr(kind) if kind else "without a suffix"
+            raise ValueError(f"{path}: a picture is saved as .png or .svg, not {suffix}")
         path.write_bytes(self.png(dpi) if kind == ".png" else self.svg())
         return path
 

@@ -53,7 +53,7 @@ class Theme:
         """The colours by their names: this theme's fields, and `early`, `own` and `late` for each robot colour."""
         colours = {field.name: getattr(self, field.name) for field in fields(self) if field.type == "str"}
         del colours["name"]
-        for index in range(1 + len(self.others)):
+        for index in range(1 + len(self.other_colours)):
             colours |= zip((f"early{index}", f"own{index}", f"late{index}"), self.time_hues(index), strict=True)
         return colours
 
@@ -63,13 +63,13 @@ class Theme:
         return LinearSegmentedColormap.from_list(f"{self.name}-clearance", list(self.near_far))
 
     @cached_property
-    def others(self) -> tuple[str, ...]:
+    def other_colours(self) -> tuple[str, ...]:
         """The colours of the second and further robots."""
         return ("#CC79A7", "#009E73", "#E69F00", "#56B4E9")
 
     def robot_colour(self, index: int) -> str:
         """Return the colour of the robot with this index in the simulation."""
-        return self.robot if index == 0 else self.others[(index - 1) % len(self.others)]
+        return self.robot if index == 0 else self.other_colours[(index - 1) % len(self.other_colours)]
 
 
 def _mix(colour: str, other: str, share: float) -> str:

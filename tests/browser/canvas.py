@@ -1,4 +1,4 @@
-"""What a player shows: the pixels of each colour on its canvas, and the times on its clock."""
+"""The display of a player: the pixels of each colour on its canvas, and the times on its clock."""
 
 from __future__ import annotations
 

@@ -201,7 +201,7 @@ def test_the_view_follows_a_robot_while_it_drives(page: Page, two_robots: Locato
     page.keyboard.press("f")
     expect(two_robots.get_by_role("button", name="Follow: bob")).to_be_visible()
     assert picture(scan) != of_ann
-    assert count(canvas, LIGHT.others[0])[0] > 50
+    assert count(canvas, LIGHT.other_colours[0])[0] > 50
     page.keyboard.press("f")
     expect(two_robots.get_by_role("button", name="Follow")).to_have_attribute("aria-pressed", "false")
 

@@ -474,11 +474,11 @@ DEADLOCKS = {
             "future.add_done_callback(lambda future: self.say('got', future.result().message))",
             "rclpy.spin_until_future_complete(self, future)",
         ),
-        "waits for ever in spin_until_future_complete() for an answer of /ask",
+        "waits for ever in spin_until_future_complete() for an answer from /ask",
     ),
     "await": (
         CLIENTS["await"].replace(", callback_group=ReentrantCallbackGroup()", ""),
-        "waits for ever in await client.call_async() for an answer of /ask",
+        "waits for ever in await client.call_async() for an answer from /ask",
     ),
     "a rate": (
         "class Rated(Speaker):\n    def __init__(self):\n        super().__init__()\n"

@@ -1,4 +1,4 @@
-"""The image of a student release, and Gradescope's autograder, in roots that buildah builds.
+"""The student-release image and Gradescope's autograder run in containers that buildah builds.
 
 ROS2_IMAGE names an image that `make image` has built. Otherwise the tests build one, which takes minutes.
 """

@@ -26,7 +26,7 @@ install(CODE "execute_process(COMMAND {python} ${{CMAKE_CURRENT_SOURCE_DIR}}/fil
 FORBIDDEN = {
     "sparse files": (
         "import sys\nfor n in range(50): open(f'{sys.argv[1]}/{n}', 'w').truncate(60 << 20)",
-        "files of more than 64 MiB in all, holes in them counted",
+        "files of more than 64 MiB in all, including holes",
     ),
     "a FIFO": ("import os, sys\nos.mkfifo(f'{sys.argv[1]}/pipe')", "pipe, which is a FIFO"),
     "a socket": (

@@ -58,7 +58,7 @@ def test_the_verdicts_are_the_same_in_lockstep_and_in_real_time(
     assert ("failed" in outcomes(stepped).values()) is (name != "reference")
     assert (stepped.time, stepped.time_note, stepped.held_up) == ("lockstep", "", 0.0)
     assert real.held_up > 0.0
-    assert (real.time, real.time_note) == ("real", "robot_controller ran in real time, because that was asked for.")
+    assert (real.time, real.time_note) == ("real", "robot_controller ran in real time, because this was requested.")
 
 
 @pytest.mark.slow
@@ -130,7 +130,7 @@ def test_all_programs_run_in_real_time_if_one_of_them_cannot_be_stepped(tmp_path
     assert (result.time, result.time_note) == (
         "real",
         "status_monitor ran in real time, because it uses rclpy in threads of its own. "
-        "What runs beside it ran in real time, too: navigation_controller, sensor_processor.",
+        "Programs that run alongside it also ran in real time: navigation_controller, sensor_processor.",
     )
 
 

@@ -88,11 +88,9 @@ def test_parameters_are_read_and_missing_or_invalid_responses_are_reported() -> 
     names, values, accepted, reason = stepped
     assert (names, values, accepted) == (["speed"], {"speed": 0.5}, False)
     assert "Wrong parameter type" in reason
-    assert without == "The node has no service /tuned/get_parameters: leave its parameter services on."
+    assert without == "The node has no service /tuned/get_parameters: keep its parameter services enabled."
     assert silent == "The node did not answer a request to /tuned/list_parameters within 5 s."
-    assert forged == (
-        "What your node answered about its parameter speed cannot be read: 200 is not a type of a parameter."
-    )
+    assert forged == ("Your node's answer about its parameter speed cannot be read: 200 is not a parameter type.")
     assert exchanges == real_exchanges
     assert exchanges[:2] == [
         ["asked", "/tuned/set_parameters_atomically", "parameters: [{name: 'speed', value: 'fast'}]"],

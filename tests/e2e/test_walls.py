@@ -121,8 +121,9 @@ def test_a_compromised_worker_sees_only_its_submission_and_its_chapter(
     classroom: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("A_KEY", "secret")
-    others = [folder for folder in course_paths.check_folders() if folder.name != f"ch{ASSIGNMENT}"]
-    hidden = [folder / part for folder in others for part in ("hidden", "mutants.yaml", "variants", "attacks.py")]
+    other_folders = [folder for folder in course_paths.check_folders() if folder.name != f"ch{ASSIGNMENT}"]
+    private_parts = ("hidden", "mutants.yaml", "variants", "attacks.py")
+    hidden = [folder / part for folder in other_folders for part in private_parts]
     own_hidden = [course_paths.CHECKS / f"ch{ASSIGNMENT}" / name for name in ("mutants.yaml", "variants", "attacks.py")]
     chapters = [folder for folder in course_paths.CHAPTERS.iterdir() if folder.name != ASSIGNMENT]
     homes = ["/root", "/home", "/var", "/run", "/etc/passwd", "/etc/shadow", Path.home() / ".cache"]

@@ -1,4 +1,4 @@
-"""Right answers written from the notebooks alone get full marks, and the wrong ones lose points."""
+"""Correct answers written from the notebooks alone get full marks, and the wrong ones lose points."""
 
 from __future__ import annotations
 

@@ -80,13 +80,13 @@ def _cell_findings(cell: NotebookNode, is_exercise: bool) -> Iterator[str]:
 def _pieces(cell: NotebookNode, hidden_functions: Sequence[str]) -> Iterator[str]:
     """Yield the rows and bullets of a Markdown cell, and the docstrings of the functions that a student writes."""
     if cell.cell_type == "code":
-        functions = {name.rpartition(".")[2] for name in hidden_functions}
+        function_names = {name.rpartition(".")[2] for name in hidden_functions}
         try:
-            tree = ast.parse(cell.source.partition("\n")[2]) if functions else ast.Module([], [])
+            tree = ast.parse(cell.source.partition("\n")[2]) if function_names else ast.Module([], [])
         except SyntaxError:  # the cell differs from the reference, which another rule reports
             return
         for node in ast.walk(tree):
-            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name in functions:
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name in function_names:
                 yield _normalize_spaces(ast.get_docstring(node) or "")
         return
     pieces: list[list[str]] = []

@@ -19,7 +19,7 @@ WORKSPACE = PurePosixPath("ws", "src")  # the folder of the chapter that contain
 
 
 def target_findings(name: str, notebook: NotebookNode) -> Iterator[Finding]:
-    """Yield a finding for each target that is not the place of its source. `name` is what findings call the notebook.
+    """Yield a finding for each target that does not match its source. `name` is what findings call the notebook.
 
     Cells that students write need a target in the workspace. Other files may be elsewhere, for example to be printed.
     """
@@ -34,5 +34,5 @@ def target_findings(name: str, notebook: NotebookNode) -> Iterator[Finding]:
 def _findings(name: str, cell: str | None, target: PurePosixPath, source: PurePosixPath) -> Iterator[Finding]:
     is_known = (course_paths.SOLUTIONS / source).is_file()  # otherwise the source is wrong, which another rule reports
     if is_known and target != WORKSPACE / source:
-        message = f"the target `{target}` is not the place of its source {source}: did you mean `{WORKSPACE / source}`?"
+        message = f"the target `{target}` does not match its source {source}: did you mean `{WORKSPACE / source}`?"
         yield Finding(name, cell, message)

@@ -19,7 +19,7 @@ from autograder.probes.leak_markers import markers_in
 
 STOLEN = "STOLEN /"  # an attack's payload prints this before each path that it could read or write
 TEXTS = (".json", ".html", ".ipynb", ".svg", ".csv", ".txt")  # the suffixes of files that contain text
-PICTURES = (".png",)  # the suffixes of pictures, whose metadata may contain text
+IMAGES = (".png",)  # the suffixes of image files, whose metadata may contain text
 _HEX = re.compile(r"(?:[0-9a-fA-F]{2}[ :,-]?){20,}")
 _BASE64 = re.compile(r"[A-Za-z0-9+/_-]{24,}")
 _ID = re.compile(r"\[([^\[\]]{1,8})\]")  # the id of a parametrized test case
@@ -48,7 +48,7 @@ def texts_of(folder: Path) -> Iterator[str]:
         yield path.name
         if path.suffix in TEXTS:
             yield path.read_text(encoding="utf-8", errors="replace")
-        elif path.suffix in PICTURES:
+        elif path.suffix in IMAGES:
             with Image.open(path) as picture:
                 yield from (f"{name} {value}" for name, value in picture.info.items())
 

@@ -90,7 +90,7 @@ def reasons(assignment: str, generated: GeneratedMutants) -> dict[str, str]:
     return by_mutant
 
 
-def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
+def faults(chapter_results: Sequence[ChapterMutationResult]) -> list[str]:
     """Return a sentence for each mutant on which the grader failed, each unexplained survivor, and each low score.
 
     The diff of an unexplained survivor follows its sentence, because the id does not show the change. A score is judged
@@ -98,16 +98,18 @@ def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
     """
     sentences = [
         f"{chapter.assignment}: the grader failed on {name}: {error}"
-        for chapter in chapters
+        for chapter in chapter_results
         for name, error in chapter.failed.items()
     ]
-    for chapter in chapters:
+    for chapter in chapter_results:
         diffs = {mutant.id: mutant.diff for mutant in chapter.generated.mutants}
         sentences += [
             f"{chapter.assignment}: {name} survives without a reason\n{textwrap.indent(diffs[name](), '    ')}"
             for name in chapter.unexplained
         ]
-    complete_chapters = [chapter for chapter in chapters if len(chapter.results) == len(chapter.generated.mutants)]
+    complete_chapters = [
+        chapter for chapter in chapter_results if len(chapter.results) == len(chapter.generated.mutants)
+    ]
     scores = [(chapter.assignment, chapter.killed, chapter.killable, MIN_KILLED) for chapter in complete_chapters]
     if {chapter.assignment for chapter in complete_chapters} == set(suites.graded_assignments()):
         killed, killable = (
@@ -122,10 +124,10 @@ def faults(chapters: Sequence[ChapterMutationResult]) -> list[str]:
     ]
 
 
-def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[str, list[int]]]:
+def mutant_counts(chapter_results: Iterable[ChapterMutationResult]) -> dict[str, dict[str, list[int]]]:
     """Return the counts [killed mutants, all mutants] for each operator of each chapter."""
     counts: dict[str, dict[str, list[int]]] = {}
-    for chapter in chapters:
+    for chapter in chapter_results:
         operators = {mutant.id: mutant.operator for mutant in chapter.generated.mutants}
         by_operator = counts[chapter.assignment] = defaultdict(lambda: [0, 0])
         for result in chapter.results:
@@ -135,28 +137,28 @@ def mutant_counts(chapters: Iterable[ChapterMutationResult]) -> dict[str, dict[s
     return counts
 
 
-def report(chapters: Sequence[ChapterMutationResult]) -> str:
+def report(chapter_results: Sequence[ChapterMutationResult]) -> str:
     """Return a Markdown table of chapters and operators, followed by all survivors with their diffs."""
-    omitted_count = sum(chapter.generated.omitted for chapter in chapters)
-    return "\n".join([f"{HEAD}{omitted_count}.\n", *_table(chapters), *_survivors(chapters)])
+    omitted_count = sum(chapter.generated.omitted for chapter in chapter_results)
+    return "\n".join([f"{HEAD}{omitted_count}.\n", *_table(chapter_results), *_survivors(chapter_results)])
 
 
-def _table(chapters: Sequence[ChapterMutationResult]) -> Iterator[str]:
-    counts = mutant_counts(chapters)
+def _table(chapter_results: Sequence[ChapterMutationResult]) -> Iterator[str]:
+    counts = mutant_counts(chapter_results)
     operators = sorted({name for rows in counts.values() for name in rows}, key=lambda name: (name == "all", name))
     rows = []
     for operator in operators:
-        cells = [chapter.get(operator, [0, 0]) for chapter in counts.values()]
+        cells = [operator_counts.get(operator, [0, 0]) for operator_counts in counts.values()]
         cells.insert(0, [sum(cell[i] for cell in cells) for i in (0, 1)])
         rows.append((operator, *(f"{killed}/{total}" if total else "" for killed, total in cells)))
-    scores = [(chapter.killed, chapter.killable) for chapter in chapters]
+    scores = [(chapter.killed, chapter.killable) for chapter in chapter_results]
     scores.insert(0, (sum(killed for killed, _ in scores), sum(killable for _, killable in scores)))
     rows.append(("without equivalent ones", *(f"{killed}/{killable}" for killed, killable in scores)))
     yield from table(("operator", "all", *(name[:2] for name in counts)), rows)
 
 
-def _survivors(chapters: Iterable[ChapterMutationResult]) -> Iterator[str]:
-    for chapter in chapters:
+def _survivors(chapter_results: Iterable[ChapterMutationResult]) -> Iterator[str]:
+    for chapter in chapter_results:
         mutants = {mutant.id: mutant for mutant in chapter.generated.mutants}
         yield f"## {chapter.assignment}: {len(chapter.survivors)} of {len(chapter.results)} survive\n"
         for name, reason in chapter.survivors.items():

@@ -110,7 +110,7 @@ class Reader:
             return struct.unpack(f"<{CODES[kind.typename]}", self._take(1, struct.calcsize(CODES[kind.typename])))[0]
         self._objects += 1
         if self._objects > MAX_OBJECTS:
-            raise ValueError(f"more than {MAX_OBJECTS} texts and messages")
+            raise ValueError(f"more than {MAX_OBJECTS} strings and messages")
         if isinstance(kind, rosidl.NamespacedType):
             return self._make(kind, {name: self.read(inner) for name, inner in self._members(kind)})
         count = self._count()
@@ -140,7 +140,7 @@ class Reader:
         return self._data[start : self._offset]
 
 
-def _convert_units(text: bytes, code: str, other: str) -> bytes:
+def _convert_units(text: bytes, code: str, target_code: str) -> bytes:
     """Convert the units of a wide string to another size: Fast CDR writes the 16 bits of a unit as 32."""
     units = struct.unpack(f"<{len(text) // struct.calcsize(code)}{code}", text)
-    return struct.pack(f"<{len(units)}{other}", *(unit & 0xFFFF for unit in units))
+    return struct.pack(f"<{len(units)}{target_code}", *(unit & 0xFFFF for unit in units))

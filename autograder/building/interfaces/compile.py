@@ -104,4 +104,4 @@ def _link(target: Path, objects: list[str], libraries: list[str]) -> None:
 
 def _run(command: list[str]) -> None:
     if subprocess.run(command, stdin=subprocess.DEVNULL).returncode != 0:
-        raise RuntimeError(f"{command[0]} refused {command[-1]}")
+        raise RuntimeError(f"{command[0]} failed on {command[-1]}")

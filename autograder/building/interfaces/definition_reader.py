@@ -75,7 +75,7 @@ def read(
     if not files:
         raise DefinitionError(package, "no .msg, .srv or .action file: put them into msg/, srv/ and action/")
     if len(files) > MAX_FILES:
-        raise DefinitionError(package, f"{len(files)} definitions, at most {MAX_FILES} are read")
+        raise DefinitionError(package, f"{len(files)} definitions, but at most {MAX_FILES} are read")
     for path in files:
         match = _PATH.fullmatch(path)
         if not match or match[1] != match[3]:
@@ -117,7 +117,7 @@ class _Reader:
         `outer_paths` are the definitions of the messages that contain it.
         """
         if self._path in outer_paths:
-            raise self._error("the message contains itself: take the field out that leads back to it")
+            raise self._error("the message contains itself: remove the field that leads back to it")
         total = 1
         for count, inner, line in self._arrays:
             inner_elements = 1
@@ -156,7 +156,7 @@ class _Reader:
         section_count = SECTIONS[self._kind]
         if len(sections) != section_count:
             advice = SEPARATOR_ADVICE[self._kind]
-            problem = f"{len(sections) - 1} separator lines ---, {section_count - 1} are needed: {advice}"
+            problem = f"{len(sections) - 1} separator lines ---, but {section_count - 1} are needed: {advice}"
             raise self._error(problem)
         return sections
 
@@ -168,11 +168,11 @@ class _Reader:
         constants: list[Constant] = []
         for line in lines:
             if line.startswith(" "):
-                raise self._error("the line begins with a space: take it out", line)
+                raise self._error("the line begins with a space: remove it", line)
             spec = self._parse(line)
             for element in (*spec.fields, *spec.constants):
                 if element.name in names:
-                    raise self._error(f"{element.name} is there twice: rename one", line)
+                    raise self._error(f"{element.name} occurs twice: rename one", line)
                 names.add(element.name)
             for constant in spec.constants:
                 self._check_value(constant.value, line)
@@ -188,7 +188,7 @@ class _Reader:
                 )
         section = Section(tuple(fields), tuple(constants))
         if not self._has_same_meaning(section):
-            raise self._error("a text with both kinds of quotation marks: use one kind in it")
+            raise self._error("a string contains both kinds of quotation marks: use only one")
         return section
 
     def _has_same_meaning(self, section: Section) -> bool:
@@ -208,7 +208,7 @@ class _Reader:
 
     def _check_field(self, field: Any, line: str) -> None:
         if field.name in _C_WORDS or keyword.iskeyword(field.name):
-            raise self._error(f"{field.name} is a word of C or Python: give the field another name", line)
+            raise self._error(f"{field.name} is a reserved word of C or Python: give the field another name", line)
         kind = field.type
         if kind.type in ("time", "duration") and kind.pkg_name is None:
             new = kind.type.capitalize()

@@ -134,7 +134,7 @@ def generate(job: InterfaceBuildJob) -> None:
     c, type_support = import_module("rosidl_generator_c"), import_module("rosidl_typesupport_c")
     fastrtps, introspection = map(import_module, C_SUPPORTS)
 
-    def generate_hashed() -> None:
+    def generate_with_type_hashes() -> None:
         include = [f"{name}:{job.share(name)}" for name in job.dependencies]
         descriptions.generate_type_hash(
             write_arguments(job, "rosidl_generator_type_description", include_paths=include)
@@ -144,12 +144,12 @@ def generate(job: InterfaceBuildJob) -> None:
         c.generate_c(write_arguments(job, "rosidl_generator_c", type_description_tuples=tuples))
         introspection.generate_c(write_arguments(job, "rosidl_typesupport_introspection_c"))
 
-    def generate_others() -> None:
+    def generate_without_type_hashes() -> None:
         python.generate_py(write_arguments(job, "rosidl_generator_py"), ["rosidl_typesupport_c"])
         type_support.generate_c(write_arguments(job, "rosidl_typesupport_c"), C_SUPPORTS)
         fastrtps.generate_typesupport_fastrtps_c(write_arguments(job, "rosidl_typesupport_fastrtps_c"))
 
-    run_in_parallel(generate_hashed, generate_others)
+    run_in_parallel(generate_with_type_hashes, generate_without_type_hashes)
     for name in ("rosidl_generator_c", "rosidl_typesupport_c", *C_SUPPORTS):
         template = job.share(name) / "resource" / f"{name}__visibility_control.h.in"
         if template.is_file():

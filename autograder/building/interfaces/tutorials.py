@@ -53,7 +53,7 @@ def _is_installed(prefix: Path, package: str, files: dict[str, str]) -> bool:
 
 
 def _replace(source: str, target: str) -> None:
-    """Put a copy of the source in the target's place: the file of a library that a process uses must not change."""
+    """Replace the target by a copy in one step, because the file of a library that a process uses must not change."""
     new = Path(f"{target}.new")
     shutil.copy2(source, new)
     new.replace(target)

@@ -1,4 +1,4 @@
-"""Grades waiting answers, one or several at a time, in the sandbox of `autograder grade`."""
+"""Grades queued answers, one or several at a time, in the sandbox of `autograder grade`."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Grader:
         return number in self._number_by_student.values()
 
     def ahead_of(self, number: int) -> int:
-        """Return how many answers are graded before the waiting one with this number."""
+        """Return how many answers are graded before the queued one with this number."""
         waiting = [hand_in for hand_in in self._store.waiting() if not self.is_being_graded(hand_in.number)]
         return len(self._number_by_student) + ahead_of(number, waiting, self._store.turns(), self._number_by_student)
 
@@ -78,7 +78,7 @@ class Grader:
                 self._failed_numbers.add(hand_in.number)
             finally:
                 del self._number_by_student[hand_in.student]
-                await self.notify()  # the student may have another waiting answer
+                await self.notify()  # the student may have another queued answer
 
     async def _next_hand_in(self) -> HandIn:
         """Wait for an answer to grade, mark its student as busy, and return it."""

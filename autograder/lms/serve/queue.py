@@ -12,7 +12,7 @@ from autograder.lms.serve.hand_in import HandIn
 def in_order(
     waiting: Iterable[HandIn], turns: Mapping[str, int], busy: Collection[str] = frozenset()
 ) -> Iterator[HandIn]:
-    """Yield the waiting answers in the order in which they are graded if no other answer arrives.
+    """Yield the queued answers in the order in which they are graded if no other answer arrives.
 
     The next turn goes to the first student without a turn so far, or else to the student whose last turn was longest
     ago. A student's answers are graded in the order of their arrival. So no student overtakes another one twice.
@@ -45,5 +45,5 @@ def next_turn(waiting: Iterable[HandIn], turns: Mapping[str, int], busy: Collect
 
 
 def ahead_of(number: int, waiting: Iterable[HandIn], turns: Mapping[str, int], busy: Collection[str]) -> int:
-    """Return how many waiting answers are graded before the one with this number."""
+    """Return how many queued answers are graded before the one with this number."""
     return next(position for position, hand_in in enumerate(in_order(waiting, turns, busy)) if hand_in.number == number)

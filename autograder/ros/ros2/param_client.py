@@ -42,7 +42,7 @@ class NodeParameters:
         return list(self._wait_for(self._client.describe_parameters(names)).descriptors)
 
     def set(self, name: str, text: str) -> Any:
-        """Set a parameter to a value, which is given as YAML text, and return the SetParametersResult."""
+        """Set a parameter to the value in `text`, parsed as YAML. Return the SetParametersResult."""
         parameter = Parameter.from_parameter_msg(ParameterMessage(name=name, value=get_parameter_value(text)))
         return self._wait_for(self._client.set_parameters([parameter])).results[0]
 

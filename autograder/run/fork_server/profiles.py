@@ -29,7 +29,7 @@ class Profile:
     """The early imports for one kind of program."""
 
     load: Callable[[], None]  # imports the modules
-    forks_children: bool = False  # whether children of such a program are forked, too (`children.py`)
+    forks_children: bool = False  # whether children of such a program are also forked (`children.py`)
     own_packages: tuple[str, ...] = ()  # its children do not use packages whose names begin with these words
 
 
@@ -69,7 +69,7 @@ def _tests() -> None:
 
 
 def _launch() -> None:
-    """Import the launch packages, real or stand-ins, and the common modules of launched programs."""
+    """Import the launch packages (real or stand-in) and the modules that launched programs commonly use."""
     _tests()
     names = ("launch_ros.actions", "launch_ros.substitutions", "launch.launch_description_sources")
     _import(*names, folder=AUTOGRADER / "ros" / "standins" if util.find_spec("launch") is None else None)

@@ -33,11 +33,11 @@ _LIMITS = {
     ),
     ExitReason.FILES: (
         Kind.OUT_OF_MEMORY,
-        "Your program made far too many files and was stopped: write one file, and not one in each callback.",
+        "Your program created far too many files and was stopped: write one file, and not one in each callback.",
     ),
     ExitReason.OUTPUT: (
         Kind.FLOODED_OUTPUT,
-        "Your program printed without end and was stopped: log when something changes, "
+        "Your program printed endlessly and was stopped: log when something changes, "
         "or give the logger throttle_duration_sec=1.0.",
     ),
 }
@@ -48,8 +48,8 @@ def diagnose_crash(crash: Crash) -> Diagnosis:
     traceback_text = tail(student_frames(crash.traceback))
     if crash.type == "SyntaxError" and _GENERATED.search(crash.traceback):
         sentence = (
-            f"Python cannot read what rosidl made of one of your definitions: {crash.message}. rosidl writes no empty "
-            "array, [], as a default: leave it out, since an array without a default is empty."
+            f"Python cannot read the code that rosidl generated from one of your definitions: {crash.message}. rosidl "
+            "cannot write an empty array, [], as a default: leave it out, because an array without a default is empty."
         )
         return Diagnosis(Kind.CRASHED_AT_IMPORT, sentence, traceback_text)
     if crash.type in ("SyntaxError", "IndentationError", "TabError"):
@@ -87,16 +87,16 @@ def diagnose_exit(process: Process) -> Diagnosis:
     if process.exit_reason is None:
         return Diagnosis(
             Kind.STUCK,
-            "Your program runs on, but no longer answers the grader: do not replace functions of rclpy, and do not use "
-            "or close file descriptors that your program did not open.",
+            "Your program is still running, but no longer answers the grader: do not replace functions of rclpy, and "
+            "do not use or close file descriptors that your program did not open.",
             detail,
         )
     status = process.returncode
     if "Assertion `" in process.output:
         return Diagnosis(
             Kind.ENDED_EARLY,
-            "Your program was aborted when it sent a message: a field, or the whole message, is of another type. "
-            "The line with Assertion says which type it should have been.",
+            "Your program was aborted when it sent a message: a field, or the whole message, has the wrong type. "
+            "The line with Assertion names the expected type.",
             detail,
         )
     ending = f"exit status {status}" if status is not None and status >= 0 else f"signal {-(status or 0)}"
@@ -123,7 +123,7 @@ def diagnose_no_answer(kind: Kind, duration: str, output: str) -> Diagnosis:
         )
     else:
         sentence = (
-            f"Your node did not come back from a callback within {duration}: a callback must return quickly. "
+            f"A callback of your node did not return within {duration}: a callback must return quickly. "
             "Look for a loop that waits, a time.sleep or a blocking call."
         )
     return Diagnosis(kind, sentence, tail(output))
@@ -132,7 +132,7 @@ def diagnose_no_answer(kind: Kind, duration: str, output: str) -> Diagnosis:
 def diagnose_too_much(output: str) -> Diagnosis:
     """Return the diagnosis of a program that has too many nodes, topics and timers for one message."""
     sentence = (
-        "Your program has more nodes, topics, services or timers than can be graded: make each of them once, in "
+        "Your program has more nodes, topics, services or timers than can be graded: create each of them once, in "
         "__init__, and none in a loop or in a callback."
     )
     return Diagnosis(Kind.STUCK, sentence, tail(output))
@@ -156,7 +156,7 @@ def diagnose_unsteppable(reason: str, output: str) -> Diagnosis:
 
 _DEADLOCKS = {
     "thread": "the only thread that could run {it} is waiting itself. In a callback, use call_async() or "
-    "send_goal_async() and a done callback, or a timer for what happens again and again",
+    "send_goal_async() and a done callback, or a timer for work that repeats",
     "group": "{it} is in a callback group that the waiting callback holds, so it can never run. Use a done callback, "
     "or put the two into different callback groups",
     "spin": "nothing spins yet, so {it} can never run. Use call_async() or send_goal_async() with "
@@ -166,8 +166,8 @@ _DEADLOCKS = {
 
 def diagnose_deadlock(deadlock: Deadlock, output: str) -> Diagnosis:
     """Return the diagnosis of a call that will never return."""
-    purpose = f" for an answer of {deadlock.name}" if deadlock.name else ""
-    awaited = "what takes the answer" if deadlock.name else "the callback that would end the wait"
+    purpose = f" for an answer from {deadlock.name}" if deadlock.name else ""
+    awaited = "the code that takes the answer" if deadlock.name else "the callback that would end the wait"
     reason = _DEADLOCKS[deadlock.reason].format(it=awaited)
     sentence = f"Your node waits for ever in {deadlock.what}{purpose}, a deadlock: {reason}."
     return Diagnosis(Kind.STUCK, sentence, tail(output))

@@ -125,7 +125,7 @@ def parse(line: bytes) -> tuple[str, Any]:
         event = data.pop("event")
         return event, _RECORDS[event](**data)
     except (ValueError, TypeError, AttributeError, LookupError, RecursionError):
-        raise ProtocolError("the line is no event") from None
+        raise ProtocolError("the line is not a valid event") from None
 
 
 def _description(**data: Any) -> Description:

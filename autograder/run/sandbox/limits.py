@@ -56,7 +56,7 @@ class MessageLimits:
 
 # The harness limits each wait for a node. The wall time limits a node for which nothing waits.
 NODE = Limits(wall_seconds=600.0)
-# What limits a build is its processor time, which does not depend on the machine's load. The wall time limits a build
+# A build is limited by its processor time, which does not depend on the machine's load. The wall time limits a build
 # that only waits.
 BUILD = Limits(wall_seconds=420.0, cpu_seconds=180, memory=2 * GIB, output=4 * MIB, scratch=256 * MIB)
 # `colcon test` with a student's tests. Tests that do not end are run twice, and a grading must have time for both runs.

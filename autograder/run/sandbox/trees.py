@@ -50,7 +50,7 @@ def list_tree(root: Path, limits: TreeLimits) -> tuple[Entry, ...]:
         if len(entries) > limits.names:
             raise TreeError(f"more than {limits.names} files and folders")
         if total > limits.size:
-            raise TreeError(f"files of more than {limits.size // MIB} MiB in all, holes in them counted")
+            raise TreeError(f"files of more than {limits.size // MIB} MiB in all, including holes")
         length = len(os.fsencode(entry.path))
         path_bytes += length
         if length > limits.path or path_bytes > limits.paths:
@@ -107,7 +107,7 @@ def _walk(root: Path, folder: str, depth: int) -> Iterator[Entry]:
             yield Entry(path, "file", bool(info.st_mode & stat.S_IXUSR), info.st_size)
         elif stat.S_ISDIR(info.st_mode):
             if not depth:
-                raise TreeError(f"{root.name}/{path[:200]}, which is nested too deep")
+                raise TreeError(f"{root.name}/{path[:200]}, which is nested too deeply")
             yield Entry(path, "folder")
             yield from _walk(root, path, depth - 1)
         else:
@@ -135,7 +135,7 @@ def _read_file(path: Path, size: int) -> bytes:
             raise TreeError(f"{path.name} is no longer a plain file")
         data = file.read(size + 1)
     if len(data) > size:
-        raise TreeError(f"{path.name} grows")
+        raise TreeError(f"{path.name} has grown")
     return data
 
 

@@ -86,7 +86,7 @@ def read_packages(root: Path) -> tuple[SubmittedFile, ...]:
         except OSError:
             mode = 0
         if not stat.S_ISDIR(mode):
-            sentence = "After the notebook has run there is no folder ws/src: create your package there."
+            sentence = "After the notebook has run, there is no folder ws/src: create your package there."
             raise StudentError(Diagnosis(Kind.NOTHING_SUBMITTED, sentence))
     return read_source_folder(root / "src")
 

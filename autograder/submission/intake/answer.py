@@ -139,8 +139,8 @@ def _choose(candidates: Sequence[Candidate], preference: Callable[[Candidate], o
     different = [c for c in fullest if c.answers != fullest[0].answers]
     if different:
         outermost = min(fullest, key=lambda c: len(c.root.parts))
-        others = [c for c in fullest if c.answers != outermost.answers]
-        if not all(c.root != outermost.root and c.root.is_relative_to(outermost.root) for c in others):
+        other_candidates = [c for c in fullest if c.answers != outermost.answers]
+        if not all(c.root != outermost.root and c.root.is_relative_to(outermost.root) for c in other_candidates):
             names = sorted({str(c.file.path if isinstance(c, Notebook) else c.folder) for c in fullest})
             sentence = (
                 f"The submission is unclear: it holds {len(names)} {label} with different answers, "
@@ -170,7 +170,7 @@ def _trees(files: Sequence[SubmittedFile], assignment: str, exercises: Exercises
             folders = {PurePosixPath(): PurePosixPath()} if package.parts else {}
         else:
             folders = {package.parent: package.parent for package in outer}
-    others = set(course_paths.assignments()) - {assignment}
+    other_assignments = set(course_paths.assignments()) - {assignment}
     files_of: dict[PurePosixPath, list[SubmittedFile]] = {folder: [] for folder in folders.values()}
     for file in files:
         if not outer or outer.intersection(file.path.parents):
@@ -178,7 +178,7 @@ def _trees(files: Sequence[SubmittedFile], assignment: str, exercises: Exercises
                 files_of[folder].append(file)
     trees = []
     for root, folder in folders.items():
-        if others.intersection(folder.parts):
+        if other_assignments.intersection(folder.parts):
             continue
         tree_files = {
             (p := package / file.path.relative_to(folder)): SubmittedFile(p, file.data, file.executable)
@@ -218,7 +218,7 @@ def _notebooks(
 ) -> list[Notebook]:
     """Return the notebooks whose names or cells are the assignment's, or else those that match no assignment."""
     folders = {tree.folder for tree in trees if tree.folder.parts}
-    by_name, by_cells, others = [], [], []
+    by_name, by_cells, unassigned = [], [], []
     for file in files:
         if not is_notebook(file.path.name) or folders.intersection((file.path, *file.path.parents)):
             continue
@@ -228,8 +228,8 @@ def _notebooks(
         elif has_chapter_cell:
             by_cells.append(notebook)
         elif not any(names_assignment(file.path.name, other) for other in course_paths.assignments()):
-            others.append(notebook)
-    return by_name + by_cells or others
+            unassigned.append(notebook)
+    return by_name + by_cells or unassigned
 
 
 def _read_notebook(file: SubmittedFile, exercises: Exercises | None) -> tuple[Notebook, bool]:

@@ -161,7 +161,7 @@ def _inflate_in_steps(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
             head = properties + bytes(8 * [0xFF])  # the size is unknown
             data = _decompressing_stream(packed, decompressor, head).read(info.file_size)
     if zlib.crc32(data) != info.CRC:
-        raise zipfile.BadZipFile(f"{info.filename} is not what the archive says")
+        raise zipfile.BadZipFile(f"{info.filename} does not match its checksum in the archive")
     return data
 
 
@@ -205,7 +205,8 @@ def _extract(archive: tarfile.TarFile, info: tarfile.TarInfo) -> bytes:
 def _add(members: Iterable[Member], prefix: PurePosixPath, contents: Contents) -> None:
     for member in members:
         if member.problem:
-            contents.skip(prefix / member.path, member.problem)
+            path = prefix / member.path
+            contents.skip(path, f"{path} {member.problem}")
         else:
             contents.add(prefix / member.path, member.size, member.read, member.executable)
 
@@ -226,7 +227,7 @@ class _LimitedStream(io.RawIOBase):
         if self._count > MAX_READ_BYTES:
             raise unsafe(f"it is larger than {MAX_READ_BYTES // 2**20} MiB when it is unpacked")
         if self._contents.bytes_unpacked > MAX_UNPACKED_BYTES:
-            raise unsafe("its archives hold too much in all")
+            raise unsafe("its archives contain too much data in all")
         buffer[: len(data)] = data
         return len(data)
 

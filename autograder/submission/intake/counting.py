@@ -117,8 +117,8 @@ def merge(source: Files, written: Sequence[SubmittedFile], exercises: Exercises)
 def difference_notice(path: PurePosixPath) -> str:
     """Return the sentence about a file that differs from its cell."""
     return (
-        f"{SOURCE / path} differs from the cell that writes it. The file counts: it is what check(...) looks at. "
-        "If you mean the text of the cell, run the cell."
+        f"{SOURCE / path} differs from the cell that writes it. The file counts, because check(...) reads it. "
+        "To use the text of the cell, run the cell."
     )
 
 

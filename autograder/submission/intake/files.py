@@ -39,14 +39,8 @@ class SkippedFile:
     """A file of a submission that was not read."""
 
     path: PurePosixPath
-    reason: str  # the part of the sentence after the path
-    whole_sentence: str = ""  # if not empty, a sentence that replaces the path and the reason
+    sentence: str  # the reason, for the student, without a full stop
     may_contain_answer: bool = False  # whether it is an archive or a notebook
-
-    @property
-    def sentence(self) -> str:
-        """The sentence for the student."""
-        return self.whole_sentence or f"{self.path} {self.reason}"
 
 
 @dataclass
@@ -77,35 +71,35 @@ class Contents:
         self.bytes_in_memory -= sum(len(file.data) for file in self.files[first:])
         del self.files[first:]
 
-    def skip(self, path: PurePosixPath, reason: str, whole_sentence: str = "") -> None:
-        """Record that a file is not read."""
+    def skip(self, path: PurePosixPath, sentence: str) -> None:
+        """Record that a file is not read. `sentence` tells the student why."""
         may_contain_answer = is_archive(path.name) or is_notebook(path.name)
-        self.skipped.append(SkippedFile(path, reason, whole_sentence, may_contain_answer))
+        self.skipped.append(SkippedFile(path, sentence, may_contain_answer))
 
     def add(self, path: PurePosixPath, size: int, read: Callable[[], bytes], executable: bool = False) -> None:
         """Read a file, or skip it if it exceeds a limit."""
         is_wrapped = is_notebook(path.name) or is_archive(path.name)
         limit = MAX_WRAPPED_BYTES if is_wrapped else MAX_FILE_BYTES
         if len(path.parts) > MAX_DEPTH:
-            self.skip(path, "", f"folders are nested more than {MAX_DEPTH} deep")
+            self.skip(path, f"folders are nested more than {MAX_DEPTH} deep")
         elif len(os.fsencode(path)) > MAX_PATH_BYTES:
-            self.skip(path, "", f"the name {str(path)[:60]!r}... is longer than {MAX_PATH_BYTES} bytes")
+            self.skip(path, f"the name {str(path)[:60]!r}... is longer than {MAX_PATH_BYTES} bytes")
         elif size > limit:
-            self.skip(path, f"is larger than {limit // 2**20} MiB")
+            self.skip(path, f"{path} is larger than {limit // 2**20} MiB")
         elif len(self.files) >= MAX_FILES:
-            self.skip(path, "", f"it holds more than {MAX_FILES} files")
+            self.skip(path, f"it holds more than {MAX_FILES} files")
         elif (
             self.bytes_in_memory + min(size, MAX_FILE_BYTES) > MAX_TOTAL_BYTES
             or self.bytes_read + size > MAX_READ_BYTES
         ):
-            self.skip(path, "", f"it is larger than {MAX_TOTAL_BYTES // 2**20} MiB in all")
+            self.skip(path, f"it is larger than {MAX_TOTAL_BYTES // 2**20} MiB in all")
         else:
             self.bytes_read += size
             data = read()
             if len(data) > MAX_FILE_BYTES and is_notebook(path.name):
                 data = without_outputs(data)
             if len(data) > MAX_FILE_BYTES and not is_archive(path.name):
-                self.skip(path, f"is larger than {MAX_FILE_BYTES // 2**20} MiB without its outputs")
+                self.skip(path, f"{path} is larger than {MAX_FILE_BYTES // 2**20} MiB without its outputs")
                 return
             self.bytes_in_memory += len(data)
             self.files.append(SubmittedFile(path, data, executable))
@@ -116,8 +110,8 @@ def unsafe(reason: str) -> StudentError:
     return StudentError(
         Diagnosis(
             Kind.UNSAFE_ARCHIVE,
-            f"The submission was not opened: {reason}. Hand in the notebook and ws/src, without links and without what "
-            "colcon builds.",
+            f"The submission was not opened: {reason}. Hand in the notebook and ws/src, without links and without the "
+            "folders build, install and log.",
         )
     )
 

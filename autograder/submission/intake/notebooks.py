@@ -36,7 +36,7 @@ def read_cells(data: bytes) -> list[Cell]:
     if version == 3:
         notebook = _convert(notebook)
     elif version != 4:
-        raise ValueError(f"its nbformat is {str(version)[:20]}, and this tool reads 4")
+        raise ValueError(f"its nbformat is {str(version)[:20]}, but this tool reads 4")
     cells = notebook.get("cells")
     if not isinstance(cells, list):
         raise ValueError("it has no list of cells")
@@ -72,7 +72,7 @@ def _parse(data: bytes) -> Cell:
             raise ValueError(f"it holds more than {MAX_VALUES:,} values: clear its outputs")
         notebook = json.loads(text)
     except RecursionError:
-        raise ValueError("it is nested too deep") from None
+        raise ValueError("it is nested too deeply") from None
     if not isinstance(notebook, dict):
         raise ValueError("it is not a JSON object")
     return notebook

@@ -79,13 +79,14 @@ def _read_folder(root: Path, contents: Contents, *, unpack: bool = False) -> Non
                 continue
             path, info = PurePosixPath(child.relative_to(root)), _status(child)
             if info is None:
-                contents.skip(path, "", f"the path {str(path)[:60]!r}... is longer than this system can open")
+                contents.skip(path, f"the path {str(path)[:60]!r}... is longer than this system can open")
             elif stat.S_ISREG(info.st_mode):
                 files.append((path, child, info))
             elif not stat.S_ISDIR(info.st_mode):
-                contents.skip(path, "is a symbolic link" if stat.S_ISLNK(info.st_mode) else "is not a regular file")
+                kind = "a symbolic link" if stat.S_ISLNK(info.st_mode) else "not a regular file"
+                contents.skip(path, f"{path} is {kind}")
             elif len(path.parts) > MAX_DEPTH:
-                contents.skip(path, "", f"folders are nested more than {MAX_DEPTH} deep")
+                contents.skip(path, f"folders are nested more than {MAX_DEPTH} deep")
             else:
                 pending.append(child)
     for path, child, info in sorted(files, key=lambda item: (reading_rank(item[0]), item[0])):
@@ -114,7 +115,8 @@ def _open_archives(contents: Contents, nesting: int) -> None:
         if nesting:
             _unpack(io.BytesIO(file.data), file.path, contents)
         else:
-            contents.skip(file.path, f"lies in {MAX_NESTING} archives or more: hand in the folder as one zip")
+            sentence = f"{file.path} is nested in {MAX_NESTING} or more archives: hand in the folder as one zip"
+            contents.skip(file.path, sentence)
     if packed and nesting:
         _open_archives(contents, nesting - 1)
 
@@ -130,12 +132,12 @@ def _unpack(file: IO[bytes], path: PurePosixPath, contents: Contents) -> None:
     file.seek(0)
     count = len(contents.files)
     if contents.archives > MAX_ARCHIVES:
-        contents.skip(path, f"is one of more than {MAX_ARCHIVES} archives")
+        contents.skip(path, f"{path} is one of more than {MAX_ARCHIVES} archives")
     elif kind:
-        contents.skip(path, "", archives.unsupported_sentence(str(path), kind))
+        contents.skip(path, archives.unsupported_sentence(str(path), kind))
     else:
         try:
             archives.read_archive(file, path.name, path, contents)
         except (StudentError, *archives.READ_ERRORS) as error:
             contents.drop(count)
-            contents.skip(path, f"cannot be opened ({error})")
+            contents.skip(path, f"{path} cannot be opened ({error})")

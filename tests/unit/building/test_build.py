@@ -68,7 +68,7 @@ def test_a_missing_src_and_an_empty_src_have_different_messages(tmp_path: Path) 
 def test_a_half_written_package_is_reported_with_the_missing_files(tmp_path: Path, part: str) -> None:
     kind, sentence = _fault(_write_package(tmp_path, without=part))
     assert kind is Kind.HALF_WRITTEN_PACKAGE
-    assert f"src/my_robot_package has no {part}: the package is only half written" in sentence
+    assert f"src/my_robot_package has no {part}: the package is incomplete" in sentence
 
 
 @pytest.mark.parametrize("part", ["setup.py", "setup.cfg", f"resource/{NAME}", f"{NAME}/__init__.py"])

@@ -17,7 +17,7 @@ from .notebooks import code, notebook, prose, solution
 
 SOURCE, TARGET = "guard/guard/watcher.py", "ws/src/guard/guard/watcher.py"
 TYPO = "ws/src/guard/guard/wacher.py"
-SENTENCE = f"the target `{{}}` is not the place of its source {SOURCE}: did you mean `{TARGET}`?"
+SENTENCE = f"the target `{{}}` does not match its source {SOURCE}: did you mean `{TARGET}`?"
 
 
 @pytest.fixture
@@ -37,13 +37,13 @@ def messages(notebook: NotebookNode) -> list[tuple[str | None, str]]:
 
 @pytest.mark.usefixtures("solutions")
 @pytest.mark.parametrize("target", [TYPO, "ws/guard/guard/watcher.py"])
-def test_a_target_that_is_not_the_place_of_its_source_is_found(target: str) -> None:
+def test_a_target_that_does_not_match_its_source_is_found(target: str) -> None:
     found = messages(copying(target, nbgrader=solution("watcher")))
     assert found == [("watcher", SENTENCE.format(target))]
 
 
 @pytest.mark.usefixtures("solutions")
-def test_a_target_that_is_the_place_of_its_source_is_accepted() -> None:
+def test_a_target_that_matches_its_source_is_accepted() -> None:
     assert messages(copying(TARGET, nbgrader=solution("watcher"))) == []
 
 
@@ -64,5 +64,5 @@ def test_no_target_is_proposed_for_a_source_that_the_reference_lacks() -> None:
     assert messages(copying(TARGET, "guard/guard/wacher.py", nbgrader=solution("watcher"))) == []
 
 
-def test_every_target_of_the_course_is_the_place_of_its_source() -> None:
+def test_every_target_of_the_course_matches_its_source() -> None:
     assert [found for chapter in chapters() for found in messages(chapter.read())] == []

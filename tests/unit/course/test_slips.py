@@ -163,7 +163,7 @@ SLIPS = [
         '"target": "ws/src/mapping/mapping/nearest.py"',
         '"target": "ws/src/mapping/mapping/nearst.py"',
         "140, cell 'nearest'",
-        "the target `ws/src/mapping/mapping/nearst.py` is not the place of its source mapping/mapping/nearest.py: did",
+        "the target `ws/src/mapping/mapping/nearst.py` does not match its source mapping/mapping/nearest.py: did",
     ),
     (
         SNAPSHOT,

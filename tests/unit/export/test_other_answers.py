@@ -35,7 +35,7 @@ def test_a_page_is_written_for_full_marks_only(
     html = page.read_text(encoding="utf-8")
     assert html.count("<h2>Answer ") == 2
     assert "class State(Enum):" in html
-    assert "numpy judges all beams at once" in html
+    assert "numpy evaluates all beams at once" in html
     assert "dora" not in html
 
 

@@ -53,7 +53,7 @@ def test_a_folder_of_submissions_has_one_submission_for_each_student(tmp_path: P
     (tmp_path / "class" / ".hidden").mkdir()
     discovered = discover((tmp_path / "class",), CHAPTER)
     assert list(discovered.submissions) == ["alice", "bob", "carol"]
-    assert [name for name, _ in discovered.others] == ["notes.txt"]
+    assert [name for name, _ in discovered.other_files] == ["notes.txt"]
 
 
 def test_an_archive_with_any_file_ending_is_a_submission(tmp_path: Path) -> None:
@@ -98,7 +98,7 @@ def test_a_submission_with_the_name_of_a_file_beside_the_results_is_not_graded(t
         _submission(tmp_path / student)
     discovered = discover((tmp_path,), CHAPTER)
     assert discovered.submissions == {"ada": tmp_path / "ada"}
-    assert discovered.others == ((name, f"{name} is the name of a file beside the results: give it another name"),)
+    assert discovered.other_files == ((name, f"{name} is the name of a file beside the results: give it another name"),)
 
 
 def test_two_submissions_with_the_same_name_are_a_usage_error(tmp_path: Path) -> None:

@@ -233,7 +233,7 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
 
         @pytest.fixture(scope="{"module" if phase == "module" else "function"}")
         def answer():
-            if "{phase}" != "check": record_data("What /add answered")
+            if "{phase}" != "check": record_data("The answer of /add")
 
         @check(points=1, group="g")
         def test_reads_first(answer):
@@ -242,7 +242,7 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
         @check(points=1, group="g")
         def test_reads(answer):
             '''It is so.'''
-            if "{phase}" == "check": record_data("What /add answered")
+            if "{phase}" == "check": record_data("The answer of /add")
             secret = 10**400 * 1.0
 
         @check(points=1, group="g")
@@ -251,7 +251,7 @@ def test_an_error_in_handling_a_student_s_data_fails_only_that_check_and_is_logg
         """)
     assert [result.outcome for result in plugin.results.values()] == [Outcome.PASSED, Outcome.FAILED, Outcome.PASSED]
     message = plugin.results["reads"].message
-    assert message.startswith("What /add answered could not be judged")
+    assert message.startswith("The answer of /add could not be judged")
     assert "int too large" not in message
     assert plugin.failures == []
     assert "OverflowError" in plugin.unjudged["reads"]
@@ -264,7 +264,7 @@ def test_a_fraction_that_a_student_s_data_make_impossible_fails_only_that_check(
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            record_data("What /add answered")
+            record_data("The answer of /add")
             expect(False, "wrong", fraction=float("nan"))
     """)
     assert plugin.results["reads"].outcome is Outcome.FAILED
@@ -280,7 +280,7 @@ def test_an_error_without_a_student_s_data_is_the_grader_s_failure_even_after_a_
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            record_data("What /add answered")
+            record_data("The answer of /add")
 
         @check(points=1, group="g")
         def test_other():
@@ -299,7 +299,7 @@ def test_an_error_that_data_cannot_cause_is_the_grader_s_failure(grade: Grade, e
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            record_data("What /add answered")
+            record_data("The answer of /add")
             raise {error}
         """)
     assert (len(plugin.failures), plugin.unjudged) == (1, {})
@@ -318,7 +318,7 @@ def test_an_error_of_a_program_or_the_machine_counts_as_the_program_s_in_the_las
         @check(points=1, group="g")
         def test_reads():
             '''It is so.'''
-            record_data("What /add answered")
+            record_data("The answer of /add")
             raise RuntimeError
 
         @check(points=1, group="g")

@@ -35,7 +35,7 @@ def test_one_message_too_many_names_the_topic_with_the_most_messages() -> None:
     for topic in ("/loud", "/loud", "/quiet") * 3:
         inflow.add(topic, 8)
     inflow.add("/loud", 8)
-    assert "sent 7 messages of 0.0 MiB in all on /loud" in exceed_limit(inflow, "/quiet", 8)
+    assert "sent 7 messages (0.0 MiB in all) on /loud" in exceed_limit(inflow, "/quiet", 8)
 
 
 def test_the_total_size_of_messages_is_bounded() -> None:
@@ -43,7 +43,7 @@ def test_the_total_size_of_messages_is_bounded() -> None:
     for _ in range(4):
         inflow.add("/map", RECEIVED_MESSAGES.size // 4)
     sentence = exceed_limit(inflow, "/map", RECEIVED_MESSAGES.size // 4)
-    assert "5 messages of 80.0 MiB in all on /map" in sentence
+    assert "5 messages (80.0 MiB in all) on /map" in sentence
     assert "100,000 messages and 64 MiB" in sentence
 
 

@@ -365,7 +365,7 @@ def test_endlessly_nested_archives_and_too_many_archives_are_not_opened(tmp_path
     data = _zip(tmp_path / "0.zip", TREE).read_bytes()
     for number in range(reading.MAX_NESTING + 2):
         data = _zip(tmp_path / "n.zip", {f"{number}.zip": data}).read_bytes()
-    assert "lies in 3 archives or more: hand in the folder as one zip" in _refusal(tmp_path / "n.zip")[1]
+    assert "is nested in 3 or more archives: hand in the folder as one zip" in _refusal(tmp_path / "n.zip")[1]
     empty = _zip(tmp_path / "e.zip", {}).read_bytes()
     many = _zip(tmp_path / "many.zip", {f"{number}.zip": empty for number in range(reading.MAX_ARCHIVES + 1)})
     assert "is one of more than 20 archives" in _refusal(many)[1]
@@ -456,5 +456,5 @@ def test_a_link_that_a_notebook_left_is_never_followed(tmp_path: Path, link: str
 
 
 def test_a_notebook_that_writes_no_workspace_is_reported(tmp_path: Path) -> None:
-    with pytest.raises(StudentError, match="After the notebook has run there is no folder ws/src"):
+    with pytest.raises(StudentError, match="After the notebook has run, there is no folder ws/src"):
         read_packages(tmp_path / "ws")

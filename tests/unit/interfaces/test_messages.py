@@ -89,7 +89,7 @@ def test_bytes_that_do_not_fit_the_type_are_refused() -> None:
 def test_a_message_of_many_messages_is_refused_before_they_are_made() -> None:
     kind = package({"msg/Empty.msg": "", "msg/Crowd.msg": "Empty[] all\n"}).msg.Crowd
     assert len(from_bytes(kind, struct.pack("<I", MAX_OBJECTS - 2) + bytes(MAX_OBJECTS)).all) == MAX_OBJECTS - 2
-    with pytest.raises(ValueError, match="texts and messages"):
+    with pytest.raises(ValueError, match="strings and messages"):
         from_bytes(kind, struct.pack("<I", 200_000) + bytes(200_000))
 
 

@@ -53,7 +53,10 @@ def test_a_module_generated_by_rosidl_is_not_called_the_students_file() -> None:
     traceback = '  File "/ws/install/msgs/lib/python3/site-packages/msgs/msg/_status.py", line 72\n    x = []\n'
     diagnosis = diagnose_crash(Crash("import", "SyntaxError", "invalid syntax (_status.py, line 72)", traceback))
     assert diagnosis.kind is Kind.CRASHED_AT_IMPORT
-    assert "what rosidl made of one of your definitions: invalid syntax (_status.py, line 72)" in diagnosis.sentence
+    assert (
+        "the code that rosidl generated from one of your definitions: invalid syntax (_status.py, line 72)"
+        in diagnosis.sentence
+    )
 
 
 def test_an_exception_without_a_message_is_shown_by_its_type() -> None:
@@ -68,7 +71,7 @@ def test_a_service_callback_without_a_response_is_reported() -> None:
 
 def test_a_message_field_of_another_type_is_reported() -> None:
     code = 'import os; print("robot: Assertion `PyLong_Check(field)\' failed.", flush=True); os.abort()'
-    assert "a field, or the whole message, is of another type" in diagnose_exit(_ended_process(code)).sentence
+    assert "a field, or the whole message, has the wrong type" in diagnose_exit(_ended_process(code)).sentence
 
 
 def test_a_program_that_just_ends_gets_the_advice_to_spin() -> None:
@@ -125,7 +128,7 @@ def test_a_node_that_never_spins_and_a_node_that_hangs_have_different_diagnoses(
     )
     assert "did not start to spin within 60 s" in never_started.sentence
     assert never_started.detail == "a\nb"
-    assert "did not come back from a callback within 30 s" in stuck.sentence
+    assert "A callback of your node did not return within 30 s" in stuck.sentence
 
 
 def test_a_printed_traceback_names_the_crash() -> None:
@@ -144,15 +147,15 @@ def test_only_the_end_of_a_long_output_is_kept() -> None:
 @pytest.mark.parametrize(
     ("reason", "words"),
     [
-        ("thread", "the only thread that could run what takes the answer is waiting itself"),
-        ("group", "what takes the answer is in a callback group that the waiting callback holds"),
-        ("spin", "nothing spins yet, so what takes the answer can never run"),
+        ("thread", "the only thread that could run the code that takes the answer is waiting itself"),
+        ("group", "the code that takes the answer is in a callback group that the waiting callback holds"),
+        ("spin", "nothing spins yet, so the code that takes the answer can never run"),
     ],
 )
 def test_a_deadlock_is_explained(reason: str, words: str) -> None:
     diagnosis = diagnose_deadlock(Deadlock("client.call()", "/add", reason), "a\nb")
     assert diagnosis.kind is Kind.STUCK
-    assert "Your node waits for ever in client.call() for an answer of /add, a deadlock: " in diagnosis.sentence
+    assert "Your node waits for ever in client.call() for an answer from /add, a deadlock: " in diagnosis.sentence
     assert words in diagnosis.sentence
     assert diagnosis.detail == "a\nb"
     unnamed = diagnose_deadlock(Deadlock("rate.sleep()", "", reason), "").sentence

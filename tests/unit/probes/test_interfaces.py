@@ -58,25 +58,30 @@ def test_comments_more_constants_and_empty_defaults_do_not_count_as_differences(
 @pytest.mark.parametrize(
     ("old", "new", "aspect", "sentence"),
     [
-        ("legs", "leg", Aspect.FIELDS, "request: a field is called leg, it should be legs."),
+        ("legs", "leg", Aspect.FIELDS, "request: a field is called leg, but it should be legs."),
         ("float64[<=8] legs\n", "", Aspect.FIELDS, "request: the field legs is missing."),
         ("bool possible", "bool possible\nint8 x", Aspect.FIELDS, "response: the contract has no field x."),
-        ("int32 reserve", "int64 reserve", Aspect.TYPES, "request: reserve is int64, it should be int32."),
-        ("float64[<=8]", "float64", Aspect.TYPES, "request: legs is float64, it should be float64[<=8]."),
-        ("float64[<=8]", "float64[8]", Aspect.TYPES, "request: legs is float64[8], it should be float64[<=8]."),
-        ("float64[<=8]", "float64[]", Aspect.BOUNDS, "request: legs is float64[], it should be float64[<=8]."),
-        ("string<=80", "string", Aspect.BOUNDS, "response: reason is string, it should be string<=80."),
-        ("reserve 20", "reserve", Aspect.DEFAULTS, "request: reserve has no default, it should be 20."),
-        ("reserve 20", "reserve 2", Aspect.DEFAULTS, "request: reserve has the default 2, it should be 20."),
-        ("possible", "possible true", Aspect.DEFAULTS, "response: possible has the default True, it should be none."),
+        ("int32 reserve", "int64 reserve", Aspect.TYPES, "request: reserve is int64, but it should be int32."),
+        ("float64[<=8]", "float64", Aspect.TYPES, "request: legs is float64, but it should be float64[<=8]."),
+        ("float64[<=8]", "float64[8]", Aspect.TYPES, "request: legs is float64[8], but it should be float64[<=8]."),
+        ("float64[<=8]", "float64[]", Aspect.BOUNDS, "request: legs is float64[], but it should be float64[<=8]."),
+        ("string<=80", "string", Aspect.BOUNDS, "response: reason is string, but it should be string<=80."),
+        ("reserve 20", "reserve", Aspect.DEFAULTS, "request: reserve has no default, but it should be 20."),
+        ("reserve 20", "reserve 2", Aspect.DEFAULTS, "request: reserve has the default 2, but it should be 20."),
+        (
+            "possible",
+            "possible true",
+            Aspect.DEFAULTS,
+            "response: possible has the default True, but it should be none.",
+        ),
         ("float64 MOST = 5.0\n", "", Aspect.CONSTANTS, "request: the constant MOST is missing."),
         (
             "MOST = 5.0",
             "MOST = 0.5",
             Aspect.CONSTANTS,
-            "request: the constant MOST is float64 0.5, it should be float64 5.0.",
+            "request: the constant MOST is float64 0.5, but it should be float64 5.0.",
         ),
-        ("MOST", "MOSTLY", Aspect.CONSTANTS, "request: a constant is called MOSTLY, it should be MOST."),
+        ("MOST", "MOSTLY", Aspect.CONSTANTS, "request: a constant is called MOSTLY, but it should be MOST."),
         (
             "float64 MOST = 5.0",
             "float64 most 5.0",
@@ -93,15 +98,17 @@ def test_each_difference_of_a_definition_is_reported_in_one_sentence(
 
 def test_a_different_order_of_fields_is_named_once() -> None:
     text = f"{REQUEST}---\nstring<=80 reason\nbool possible\n"
-    order = f"{PATH}, response: the order of the fields is reason, possible, it should be possible, reason."
+    order = f"{PATH}, response: the order of the fields is reason, possible, but it should be possible, reason."
     assert differences_of(text) == [(Aspect.FIELDS, order)]
 
 
 def test_a_field_or_constant_in_the_wrong_part_is_named_once() -> None:
     field = f"{REQUEST}bool possible\n---\nstring<=80 reason\n"
-    assert differences_of(field) == [(Aspect.FIELDS, f"{PATH}, response: possible is in the request, it belongs here.")]
+    assert differences_of(field) == [
+        (Aspect.FIELDS, f"{PATH}, response: possible is in the request, but it belongs here.")
+    ]
     constant = "float64[<=8] legs\nint32 reserve 20\n---\nfloat64 MOST = 5.0\n" + RESPONSE
-    sentence = f"{PATH}, request: the constant MOST is in the response, it belongs here."
+    sentence = f"{PATH}, request: the constant MOST is in the response, but it belongs here."
     assert differences_of(constant) == [(Aspect.CONSTANTS, sentence)]
 
 
@@ -115,7 +122,7 @@ def test_the_correct_share_counts_fields_and_constants() -> None:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        (REQUEST, "one line --- parts the request from the response"),
+        (REQUEST, "one line --- separates the request from the response"),
         (f"float legs\n---\n{RESPONSE}", "'float' is an invalid message name"),
         (f"float64 Legs\n---\n{RESPONSE}", "'Legs' is an invalid field name"),
         (f"legs\n---\n{RESPONSE}", "a field is written `type name`"),
@@ -132,7 +139,7 @@ def test_a_definition_that_the_build_would_reject_is_rejected_with_the_reason(te
 
 
 def test_an_action_without_its_parts_is_refused() -> None:
-    with pytest.raises(Unreadable, match="two lines --- part goal, result and feedback"):
+    with pytest.raises(Unreadable, match="two lines --- separate goal, result and feedback"):
         parse("pkg", "action/A.action", "int8 a\n---\n")
 
 

@@ -68,7 +68,7 @@ def test_a_launch_file_that_cannot_be_read_is_reported_with_error_and_line() -> 
     log = NOT_READ.replace("expected ':' (robot.launch.py, line 28)", "no such thing")
     assert launch_probe.unreadable(log) == "SyntaxError: no such thing (ws/src/pkg/launch/robot.launch.py, line 28)"
     assert launch_probe.unreadable("Package 'pkg' not found\n") == "Package 'pkg' not found"
-    assert launch_probe.unreadable("") == "it says nothing"
+    assert launch_probe.unreadable("") == "it printed nothing"
 
 
 def test_choices_may_be_a_tuple() -> None:

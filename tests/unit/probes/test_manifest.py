@@ -1,4 +1,4 @@
-"""package.xml is read as ROS reads it, and refused with a reason if ROS refuses it."""
+"""package.xml is read as ROS reads it, and refused with a reason if ROS rejects it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Evenly spaced messages are distinguished from as many that come in pairs, in lockstep and in real time."""
+"""Evenly spaced messages are distinguished from as many messages in pairs, in lockstep and in real time."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_fewer_than_two_messages_have_no_pace(count: int) -> None:
     ("messages", "description"),
     [
         (_after([0.2] * 20), "every 0.20 s"),
-        (_after([0.0, 0.2] * 20), "every 0.10 s in the mean, with pauses of 0.00 s to 0.20 s"),
+        (_after([0.0, 0.2] * 20), "every 0.10 s on average, with pauses of 0.00 s to 0.20 s"),
         (_after([]), "once"),
         ([], "not at all"),
     ],

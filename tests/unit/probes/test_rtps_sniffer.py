@@ -49,5 +49,5 @@ def test_a_sniffer_raises_when_every_domain_has_participants(monkeypatch: pytest
     with ExitStack() as stack:
         for _ in rtps_sniffer.DOMAINS:
             stack.enter_context(RtpsSniffer())
-        with pytest.raises(GraderError, match="Programs are in all DDS domains from 228 to 229"):
+        with pytest.raises(GraderError, match="All DDS domains from 228 to 229 are in use"):
             RtpsSniffer()

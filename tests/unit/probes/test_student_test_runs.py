@@ -349,5 +349,5 @@ def test_a_full_disk_is_the_students_fault(workspace: Workspace, monkeypatch: py
 
     write(workspace, GOOD)
     monkeypatch.setattr(student_test_runs, "write_version", full)
-    with pytest.raises(StudentError, match="no room left on the disk"):
+    with pytest.raises(StudentError, match="The disk is full"):
         run_all(workspace, TestRun(("test_half.py",), RIGHT))

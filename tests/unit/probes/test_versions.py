@@ -9,7 +9,15 @@ from typing import Any
 
 import pytest
 
-from autograder.checks.ch06_testing.hidden.faults import STYLES, Fault, bare, broken, faults, reworded, style
+from autograder.checks.ch06_testing.hidden.faults import (
+    STYLES,
+    Fault,
+    faults,
+    faulty_version,
+    minimal_version,
+    reworded_version,
+    version_in,
+)
 from autograder.exceptions import GraderError
 from autograder.probes.leak_markers import markers_in
 from autograder.probes.versions import FILE_TIME, Version, obfuscate, read, write_version
@@ -120,23 +128,24 @@ def test_a_packages_tests_and_caches_are_not_part_of_its_version(tmp_path: Path)
 
 def test_all_versions_have_the_same_files() -> None:
     draw = random.Random(1)
-    names = {frozenset(broken(fault, name, draw).files) for fault in faults() for name in STYLES}
-    assert names == {frozenset(style(name).files) for name in STYLES}
+    names = {frozenset(faulty_version(fault, name, draw).files) for fault in faults() for name in STYLES}
+    assert names == {frozenset(version_in(name).files) for name in STYLES}
     assert len(names) == 1
 
 
 @pytest.mark.parametrize("fault", faults(), ids=lambda fault: str(fault.id))
 @pytest.mark.parametrize("name", STYLES)
 def test_every_fault_applies_to_both_styles(fault: Fault, name: str) -> None:
-    faulty = broken(fault, name, random.Random(1)).files
-    right = obfuscate(style(name), random.Random(1).getrandbits(32)).files
-    assert {path for path in right if right[path] != faulty[path]} >= {fault.file}
+    faulty = faulty_version(fault, name, random.Random(1)).files
+    correct = obfuscate(version_in(name), random.Random(1).getrandbits(32)).files
+    assert {path for path in correct if correct[path] != faulty[path]} >= {fault.file}
     compile(faulty[fault.file], fault.file, "exec")
 
 
 def test_every_reworded_version_compiles_and_has_the_same_files() -> None:
-    reworded_files = [reworded(random.Random(seed)).files for seed in range(30)] + [bare(random.Random(1)).files]
-    plain = obfuscate(style(STYLES[0]), 1).files
+    reworded_files = [reworded_version(random.Random(seed)).files for seed in range(30)]
+    reworded_files.append(minimal_version(random.Random(1)).files)
+    plain = obfuscate(version_in(STYLES[0]), 1).files
     assert all(files.keys() == plain.keys() for files in reworded_files)
     for name in (name for name in plain if name.endswith(".py")):
         for files in reworded_files:
@@ -145,14 +154,14 @@ def test_every_reworded_version_compiles_and_has_the_same_files() -> None:
 
 def test_a_fault_whose_text_is_not_found_is_named() -> None:
     fault = Fault("lost", "stop", "speed_guard/limits.py", dict.fromkeys(STYLES, ("no such text", "")), frozenset())
-    with pytest.raises(GraderError, match=r"fault lost: 'no such text' stands 0 times in speed_guard/limits.py"):
-        broken(fault, STYLES[0], random.Random(1))
+    with pytest.raises(GraderError, match=r"fault lost: 'no such text' occurs 0 times in speed_guard/limits.py"):
+        faulty_version(fault, STYLES[0], random.Random(1))
 
 
 def test_the_text_of_a_fault_must_occur_once_unless_the_fault_allows_more() -> None:
     edits = dict.fromkeys(STYLES, ("return", "return None or"))
-    with pytest.raises(GraderError, match=r"stands \d times"):
-        broken(Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset()), STYLES[0], random.Random(1))
+    with pytest.raises(GraderError, match=r"occurs \d times"):
+        faulty_version(Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset()), STYLES[0], random.Random(1))
     repeated = Fault("twice", "stop", "speed_guard/limits.py", edits, frozenset(STYLES))
-    text = broken(repeated, STYLES[1], random.Random(1)).files["speed_guard/limits.py"]
+    text = faulty_version(repeated, STYLES[1], random.Random(1)).files["speed_guard/limits.py"]
     assert text.partition("\n# ")[0].endswith("return None or wanted")

@@ -1,4 +1,4 @@
-"""A tree that comes over a worker's line matches its list, or is refused."""
+"""A tree that is received over a worker's line matches its list, or is refused."""
 
 from __future__ import annotations
 

@@ -206,8 +206,8 @@ def test_the_compiled_sources_run_interpreted_too() -> None:
     robot = np.zeros(14)
     moved_robot = robot.copy()
     limits, drift, noise = np.array([1.0, 1.0, 9.0, 9.0]), np.zeros(3), np.zeros((4, 2))
-    motion.advance_free(robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
-    arrays.advance_free(moved_robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
+    motion.advance_unobstructed(robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
+    arrays.advance_unobstructed(moved_robot, 0.5, 0.3, 4, 0.02, limits, drift, noise)
     np.testing.assert_array_equal(robot, moved_robot)
 
 

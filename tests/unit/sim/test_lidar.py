@@ -235,7 +235,7 @@ def test_scan_angles_put_zero_ahead_and_left_positive(beam: int) -> None:
     ("change", "message"),
     [
         ({"beams": 0}, "beams is 0; give from 1 to"),
-        ({"beams": 361}, "go round more than once"),
+        ({"beams": 361}, "cover more than a turn"),
         ({"angle_increment": 0.0}, "angle_increment is 0.0; give radians"),
         ({"angle_min": math.nan}, "angle_min is nan; give an angle"),
         ({"range_max": math.inf}, "range_max is inf; give metres"),
@@ -254,7 +254,7 @@ def test_an_invalid_lidar_is_refused(change: dict[str, float], message: str) -> 
 def test_invalid_faults_are_refused() -> None:
     with pytest.raises(SpecError, match="give a start of 0 or more and a later end"):
         Window(2.0, 1.0)
-    with pytest.raises(SpecError, match="give two angles in radians"):
+    with pytest.raises(SpecError, match="give two finite angles in radians"):
         DeadSector(math.nan, 1.0)
 
 

@@ -231,7 +231,7 @@ def test_an_invalid_drift_is_refused() -> None:
     ("settings", "message"),
     [
         ({"robots": ()}, "a simulation needs a robot"),
-        ({"robots": (RobotSpec(), RobotSpec())}, "two robots have one name"),
+        ({"robots": (RobotSpec(), RobotSpec())}, "two robots have the same name"),
         ({"tick": 0.0}, "tick is 0.0 s; give the physics period"),
         ({"seed": -1}, "seed is -1; give a whole number"),
         ({"seed": 0.5}, "seed is 0.5; give a whole number"),
@@ -262,12 +262,12 @@ def test_invalid_commands_are_refused() -> None:
 
 def test_invalid_worlds_are_refused() -> None:
     for build, message in (
-        (lambda: World.from_segments([[0, 0, 1, math.nan]]), "segments hold a number that is not within"),
-        (lambda: World.from_segments([[0, 0, 1, 1e9]]), "segments hold a number that is not within"),
+        (lambda: World.from_segments([[0, 0, 1, math.nan]]), "segments contain a number that is not within"),
+        (lambda: World.from_segments([[0, 0, 1, 1e9]]), "segments contain a number that is not within"),
         (lambda: World(segments=np.zeros((2, 3))), r"segments have the shape \(2, 3\)"),
         (lambda: World(segments=["a"]), "segments are not numbers"),  # type: ignore[arg-type]
         (lambda: World(circles=np.zeros((1, 3))), "radius is not above zero"),
-        (lambda: World.from_segments([[0, 0, 1, 1]], segment_names=("a", "b")), "holds 2 names for 1"),
+        (lambda: World.from_segments([[0, 0, 1, 1]], segment_names=("a", "b")), "contains 2 names for 1"),
         (lambda: World.from_segments([], starts=[Pose(math.nan)]), "a start pose is not within the world"),
         (lambda: Goal(0.0, math.inf), "a goal at"),
         (lambda: Mover(()), "the path of the mover"),

@@ -140,7 +140,7 @@ BAD: list[tuple[str | bytes, int | None, str]] = [
     ("starts:\n  - {x: 1}\n", 2, "a start pose lacks 'y'"),
     ("starts:\n  - [1, 2]\n", 2, "a start pose [x, y, theta] is a list of 2. Give 3"),
     ("starts:\n  - {x: 1, y: 2, theta: 90 m}\n", 2, "theta is '90 m'. Give a number, in rad or deg"),
-    ("starts:\n  - {x: 1, y: 2, theta: 180}\n", 2, "theta is 180 rad. Give an angle within a turn; mind the units"),
+    ("starts:\n  - {x: 1, y: 2, theta: 180}\n", 2, "theta is 180 rad. Give an angle within a turn; check the units"),
     (
         "circles:\n  - {center: [1, 2], radius: 1}\nstarts:\n  - {x: 1, y: 2}\n",
         4,

@@ -104,7 +104,7 @@ def test_a_command_that_is_not_finite_is_refused(value: float) -> None:
     for field in ("linear", "angular"):
         msg = Twist()
         setattr(getattr(msg, field), "x" if field == "linear" else "z", value)
-        with pytest.raises(ValueError, match="is not finite; the robot can't obey it"):
+        with pytest.raises(ValueError, match="is not finite; the robot can't execute it"):
             twist_to_command(msg)
 
 

@@ -135,7 +135,7 @@ def test_a_bag_contains_every_message_in_order_of_time(recording: Recording, tmp
 
 def test_an_existing_bag_is_not_overwritten(recording: Recording, tmp_path: Path) -> None:
     (tmp_path / "run").mkdir()
-    with pytest.raises(ExportError, match="run: there is something already"):
+    with pytest.raises(ExportError, match="run: it already exists"):
         to_mcap(recording, tmp_path / "run.mcap")
 
 

@@ -152,26 +152,26 @@ BAD_FIELDS: list[tuple[dict[str, str | None], str]] = [
     ({"image": '"a\\0b.pgm"'}, "map.yaml:1: 'image' is not one value"),
     ({"image": "x" * 5000}, "can't be read"),
     ({"resolution": "abc"}, "map.yaml:2: 'abc' of 'resolution' is not a number"),
-    ({"resolution": "0"}, "map.yaml:2: a cell of 0 m makes no map"),
+    ({"resolution": "0"}, "map.yaml:2: a cell of 0 m is not usable"),
     ({"resolution": "-0.05"}, "map.yaml:2: a cell of -0.05 m"),
     ({"resolution": ".nan"}, "map.yaml:2: '.nan' of 'resolution' is not a number"),
-    ({"resolution": "nan"}, "map.yaml:2: nan of 'resolution' is no usable number"),
-    ({"resolution": "1e400"}, "map.yaml:2: 1e400 of 'resolution' is no usable number"),
+    ({"resolution": "nan"}, "map.yaml:2: nan of 'resolution' is not a usable number"),
+    ({"resolution": "1e400"}, "map.yaml:2: 1e400 of 'resolution' is not a usable number"),
     ({"resolution": "{}"}, "map.yaml:2: 'resolution' is not one value"),
     ({"resolution": "1e5"}, "map.yaml:2: a cell of 100000 m"),
     ({"origin": "[0, 0]"}, "map.yaml:3: 'origin' is not three numbers"),
     ({"origin": "0"}, "map.yaml:3: 'origin' is not three numbers"),
     ({"origin": "[0, 0, north]"}, "map.yaml:3: 'north' of 'origin' is not a number"),
-    ({"origin": "[0, 0, inf]"}, "map.yaml:3: inf of 'origin' is no usable number"),
+    ({"origin": "[0, 0, inf]"}, "map.yaml:3: inf of 'origin' is not a usable number"),
     ({"origin": "[0, 0, [1]]"}, "map.yaml:3: 'origin' is not three numbers"),
-    ({"origin": "[1e9, 0, 0]"}, "map.yaml:3: 1e9 of 'origin' is no usable number"),
+    ({"origin": "[1e9, 0, 0]"}, "map.yaml:3: 1e9 of 'origin' is not a usable number"),
     ({"negate": "maybe"}, "map.yaml:4: negate is 'maybe'"),
     ({"negate": "2"}, "map.yaml:4: negate is '2'"),
     ({"occupied_thresh": "1.5"}, "map.yaml:5: occupied_thresh is 1.5"),
     ({"free_thresh": "-0.1"}, "map.yaml:6: free_thresh is -0.1"),
     ({"free_thresh": "0.9"}, "map.yaml:6: free_thresh 0.9 is not below occupied_thresh 0.65"),
     ({"mode": "binary"}, "map.yaml:7: the mode 'binary' is unknown. Choose one of trinary, scale, raw"),
-    ({"negate": "0\nnegate: 1"}, "map.yaml:5: 'negate' is there twice"),
+    ({"negate": "0\nnegate: 1"}, "map.yaml:5: 'negate' occurs twice"),
     ({"mode": "trinary\n  oops: [1"}, "not YAML"),
     ({"occupied_thresh": "1.0"}, "no cell is a wall"),
 ]
@@ -196,10 +196,10 @@ BAD_PICTURES = [
     (b"P5\n8 6\n70000\n", "largest value is 70000"),
     (b"P5\n0 6\n255\n", "0 x 6 pixels"),
     (b"P5\n99999 99999\n255\n", "99999 x 99999 pixels are more than 16,000,000"),
-    (b"P5\n8 6\n255\n" + bytes(47), "cut short: it needs 48 bytes of pixels, it has 47"),
+    (b"P5\n8 6\n255\n" + bytes(47), "cut short: it needs 48 bytes of pixels, but has 47"),
     (b"P5\n8 6\n65535\n" + bytes(95), "cut short: it needs 96 bytes"),
     (b"P5\n8 6\n100\n" + bytes([101]) * 48, "a pixel is 101, above the PGM's largest value 100"),
-    (b"P2\n2 2\n255\n0 1 2", "cut short: 4 pixels announced, 3 there"),
+    (b"P2\n2 2\n255\n0 1 2", "cut short: it needs 4 pixels, but has 3"),
     (b"P2\n2 2\n255\n0 1 two 3", "'two' is not a pixel"),
     (b"P2\n2 2\n255\n0 1 -2 3", "'-2' is not a pixel"),
     (b"P2\n2 2\n255\n0 1 99999999999999 3", "is not a pixel"),
@@ -223,7 +223,7 @@ def test_a_broken_picture_is_refused_by_name(tmp_path: Path, picture: bytes, mes
 
 def test_a_picture_of_noise_is_rejected(tmp_path: Path) -> None:
     noise = np.indices((400, 600)).sum(axis=0) % 2 * 254
-    with pytest.raises(WorldError, match="an outline of 480,000 edges is no floor plan"):
+    with pytest.raises(WorldError, match="an outline of 480,000 edges is not a floor plan"):
         load_map(write(tmp_path, pgm(noise.astype(np.uint8))))
 
 

@@ -36,16 +36,16 @@ def test_every_objective_has_a_question() -> None:
 @pytest.mark.parametrize("name", QUESTIONS)
 def test_every_wrong_answer_is_explained_without_naming_the_right_one(name: str) -> None:
     question = QUESTIONS[name]
-    assert {question.right, *question.wrong} == set("abcd")
-    assert len(question.wrong) == 3
-    for text in (question.title, *question.wrong.values(), *question.hints):
-        assert not re.search(rf"(?<![\w.'/]){question.right}\)", text)
+    assert {question.correct_letter, *question.explanations} == set("abcd")
+    assert len(question.explanations) == 3
+    for text in (question.title, *question.explanations.values(), *question.hints):
+        assert not re.search(rf"(?<![\w.'/]){question.correct_letter}\)", text)
     assert len(set(question.hints)) == 2
 
 
 def test_the_reference_contains_the_key_and_the_release_does_not() -> None:
     sheet = (course_paths.SOLUTIONS / contract.SHEET).read_text()
-    assert parse(sheet) == {name: question.right for name, question in QUESTIONS.items()}
+    assert parse(sheet) == {name: question.correct_letter for name, question in QUESTIONS.items()}
     released = in_form(Chapter(course_paths.chapter(ASSIGNMENT)).read(), Form.RELEASED)
     (cell,) = [cell for cell in released.cells if cell.id == "answers"]
     assert "still to be written" in cell.source
@@ -53,7 +53,7 @@ def test_the_reference_contains_the_key_and_the_release_does_not() -> None:
 
 
 def test_each_letter_is_equally_often_the_correct_answer() -> None:
-    letters = [question.right for question in QUESTIONS.values()]
+    letters = [question.correct_letter for question in QUESTIONS.values()]
     assert all(letters.count(letter) == 3 for letter in contract.LETTERS)
 
 

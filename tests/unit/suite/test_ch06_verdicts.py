@@ -1,4 +1,4 @@
-"""Runs of a student's tests are explained in sentences: runs on a right version, a hard one, and faulty ones."""
+"""Runs of a student's tests are explained in sentences: runs on a correct version, a hard one, and faulty ones."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ ENOUGH = report(*[GOOD] * MIN_TESTS[LIMITS])
         ),
         (
             replace(report(exit_reason=ExitReason.MEMORY), status=None),
-            "The tests in test_limits.py ended on the package as it is before pytest could say how they went: memory.",
+            "The tests in test_limits.py ended on the package as it is before pytest could report results: memory.",
             False,
         ),
         (
@@ -128,36 +128,37 @@ def examination(tmp_path: Path) -> Examination:
 
 
 def test_tests_that_fail_on_all_faults_of_a_line_earn_its_points(examination: Examination) -> None:
-    examination.expect_objection("unknown", "the promise.")
-    examination.expect_right(LIMITS)
+    examination.expect_detection("unknown", "the promise.")
+    examination.expect_passed_on_correct_versions(LIMITS)
     assert examination.endless_files() == []
 
 
 def test_tests_that_fail_on_some_faults_of_a_line_earn_a_part_and_the_line_is_named(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, "nan_is_clear"] = ENOUGH
     with pytest.raises(CheckFailed) as excinfo:
-        examination.expect_objection("unknown", "the promise.")
+        examination.expect_detection("unknown", "the promise.")
     assert excinfo.value.fraction == 0.5
     assert excinfo.value.message == (
-        "1 of 2 faulty versions that break this line of the contract pass all tests in test_limits.py: the promise."
+        "1 of 2 faulty versions pass all tests in test_limits.py, although they break this line of the contract: "
+        "the promise."
     )
 
 
 def test_a_test_that_also_fails_on_right_versions_earns_nothing(examination: Examination) -> None:
     examination.__dict__["trial"] = {LIMITS: report(BAD)}
     with pytest.raises(CheckFailed):
-        examination.expect_objection("unknown", "the promise.")
+        examination.expect_detection("unknown", "the promise.")
 
 
 def test_a_stopped_run_counts_as_failed_and_as_endless(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, "nan_is_clear"] = report(exit_reason=ExitReason.WALL_TIME)
-    examination.expect_objection("unknown", "the promise.")
+    examination.expect_detection("unknown", "the promise.")
     assert examination.endless_files() == [LIMITS]
 
 
 def test_tests_that_fail_in_reverse_order_are_reported(examination: Examination) -> None:
     examination.__dict__["runs"][LIMITS, BACKWARDS] = report(BAD, message="secret").closed(frozenset())
-    examination.expect_right(LIMITS)
+    examination.expect_passed_on_correct_versions(LIMITS)
     with pytest.raises(CheckFailed, match=r"test_limits\.py fails when the tests run in the opposite") as excinfo:
-        examination.expect_right(LIMITS, BACKWARDS)
+        examination.expect_passed_on_correct_versions(LIMITS, BACKWARDS)
     assert "secret" not in excinfo.value.message

@@ -1,4 +1,4 @@
-"""The drawn requests of 05 find typical mistakes with every seed, and no right node fails with them."""
+"""The drawn requests of 05 find typical mistakes with every seed, and no correct node fails with them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from autograder.checks.ch05_parameters.support import answers
 from autograder.checks.ch05_parameters.support.contract import DEFAULTS, SPECIFICATIONS
 from autograder.checks.ch05_parameters.support.drawn_requests import (
     ACCEPTED,
-    ANY,
+    ANY_VALUES,
     DISTANCES,
     FOREIGN,
     REFUSED,
@@ -31,10 +31,10 @@ from autograder.suite.drawn_cases import expect_each
 SEEDS = range(4)
 Validate = Callable[["Node", dict[str, Any]], bool]
 KINDS: dict[str, tuple[Any, dict[str, Any]]] = {
-    "contradiction": (dialogues(REFUSED), {"judged": (False,)}),
-    "together": (dialogues(ACCEPTED), {"judged": (True,)}),
+    "contradiction": (dialogues(REFUSED), {"tested_answers": (False,)}),
+    "together": (dialogues(ACCEPTED), {"tested_answers": (True,)}),
     "no_side_effects": (dialogues(WITHOUT_DISTANCES, ACCEPTED, REFUSED, first=REFUSED, is_clear=True), {}),
-    "passes": (dialogues(WITHOUT_DISTANCES, others=ANY), {"judged": (True,)}),
+    "passes": (dialogues(WITHOUT_DISTANCES, other_parameters=ANY_VALUES), {"tested_answers": (True,)}),
     "beside_others": (dialogues(REFUSED, ACCEPTED, WITHOUT_DISTANCES, is_clear=True, names_foreign=True), {}),
 }
 

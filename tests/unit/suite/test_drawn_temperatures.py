@@ -1,4 +1,4 @@
-"""The drawn temperatures of 09 find typical mistakes with every seed, and no right program fails with them."""
+"""The drawn temperatures of 09 find typical mistakes with every seed, and no correct program fails with them."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_temperatures_tell_guards_apart(
 
     for seed in SEEDS:
         program: Any = Program(guard())
-        strategy = drawn.switched(*edges, hot=hot, cool=cool)
+        strategy = drawn.around_thresholds(*edges, hot=hot, cool=cool)
         try:
             drawn.expect_switching(program, strategy, random.Random(seed), fraction=0.5, hot=hot, cool=cool)
         except CheckFailed:

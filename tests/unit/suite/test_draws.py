@@ -77,8 +77,8 @@ def test_launch_inputs_differ_from_every_default() -> None:
         inputs = draw_inputs(random.Random(f"{seed}:launch"))
         assert inputs.speed > 0.0
         assert inputs.speed != launches.SPEED
-        assert inputs.empty < SELF_TEST < min(inputs.enough, inputs.whole_battery) <= 100.0
-        assert inputs.enough != int(inputs.enough)
+        assert inputs.low_battery < SELF_TEST < min(inputs.sufficient_battery, inputs.whole_battery) <= 100.0
+        assert inputs.sufficient_battery != int(inputs.sufficient_battery)
         assert not {*inputs.names} & {launches.FIRST, launches.SECOND}
         assert {"'", '"'} < set(inputs.quoted_name)
 

@@ -132,8 +132,8 @@ def test_a_test_that_fails_on_the_given_package_costs_no_line_that_the_others_se
         workspace,
         lambda order, test: test == "b" or (test == "c" and _kind(examination, order) in {"step", "smooth"}),
     )
-    examination.expect_right(LIMITS, "backwards")
-    examination.expect_objection("slow", "it is a line.")
+    examination.expect_passed_on_correct_versions(LIMITS, "backwards")
+    examination.expect_detection("slow", "it is a line.")
     assert {order.deselected for order in orders[1:]} == {("test_limits::test[b]",)}
 
 
@@ -146,10 +146,10 @@ def test_a_test_that_objects_to_a_right_version_is_left_out_and_costs_one_check(
 
     examination, orders = examine(monkeypatch, workspace, fails)
     with pytest.raises(
-        CheckFailed, match=r"test in test_limits\.py fails on a right speed_guard that is written differently"
+        CheckFailed, match=r"test in test_limits\.py fails on a correct speed_guard that is written differently"
     ):
-        examination.expect_right(LIMITS, "backwards")
-    examination.expect_objection("slow", "it is a line.")
+        examination.expect_passed_on_correct_versions(LIMITS, "backwards")
+    examination.expect_detection("slow", "it is a line.")
     assert orders[-1].deselected == ("test_limits::test[b]",)
 
 
@@ -157,8 +157,8 @@ def test_tests_that_object_to_every_other_version_earn_no_line(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     examination, _ = examine(monkeypatch, workspace, lambda order, test: _kind(examination, order) != "trial")
-    with pytest.raises(CheckFailed, match="none says anything of a faulty one"):
-        examination.expect_objection("slow", "it is a line.")
+    with pytest.raises(CheckFailed, match="failures on faulty ones prove nothing"):
+        examination.expect_detection("slow", "it is a line.")
 
 
 def test_tests_that_object_to_right_versions_by_chance_earn_no_line(
@@ -168,5 +168,5 @@ def test_tests_that_object_to_right_versions_by_chance_earn_no_line(
     examination, _ = examine(
         monkeypatch, workspace, lambda order, test: _kind(examination, order) != "trial" and luck.random() < 0.5
     )
-    with pytest.raises(CheckFailed, match="so that"):
-        examination.expect_objection("slow", "it is a line.")
+    with pytest.raises(CheckFailed, match="failures on faulty ones prove nothing"):
+        examination.expect_detection("slow", "it is a line.")

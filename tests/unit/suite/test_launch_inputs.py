@@ -31,9 +31,9 @@ def test_inputs_differ_from_the_defaults_that_they_must_override() -> None:
     for seed in range(200):
         inputs = draw_inputs(random.Random(seed))
         assert inputs.speed != 0.2
-        assert inputs.file["speed"] not in (inputs.speed, 0.2)
-        assert inputs.file["turn_rate"] != 0.4
-        assert inputs.file["report_period"] != 0.5
+        assert inputs.file_values["speed"] not in (inputs.speed, 0.2)
+        assert inputs.file_values["turn_rate"] != 0.4
+        assert inputs.file_values["report_period"] != 0.5
         assert len({*inputs.names, "robot1", "robot2"}) == 4
-        assert inputs.empty < 20.0 < inputs.enough
+        assert inputs.low_battery < 20.0 < inputs.sufficient_battery
         assert inputs.whole_battery > 20

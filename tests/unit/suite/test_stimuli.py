@@ -66,7 +66,7 @@ def test_one_wrong_command_among_many_fails_the_check() -> None:
 
 
 def test_missing_commands_are_never_right() -> None:
-    with pytest.raises(CheckFailed, match="Now, no command came on /cmd_vel: the robot should publish zero velocity"):
+    with pytest.raises(CheckFailed, match="Now, no command was published on cmd_vel: the robot should publish zero"):
         expect_stop([], "Now")
 
 

@@ -48,5 +48,5 @@ def test_always_agrees_with_the_definition_of_robustness(gaps: list[float]) -> N
 
 
 def test_a_trace_of_fewer_than_two_samples_fails_the_check() -> None:
-    with pytest.raises(CheckFailed, match="Fewer than two messages came"):
+    with pytest.raises(CheckFailed, match="Fewer than two messages were received"):
         always("gap > 0.1", [0.5], {"gap": [1.0]})

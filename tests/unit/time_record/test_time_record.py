@@ -18,11 +18,11 @@ from autograder.run.workspace import Workspace
         (
             {"a": "thread"},
             "a ran in real time, because it uses rclpy in threads of its own. "
-            "What runs beside it ran in real time, too: b.",
+            "Programs that run alongside it also ran in real time: b.",
         ),
         (
             {"a": REAL, "b": REAL},
-            "a ran in real time, because that was asked for. b ran in real time, because that was asked for.",
+            "a ran in real time, because this was requested. b ran in real time, because this was requested.",
         ),
     ],
     ids=["one cannot be stepped", "asked for"],

@@ -38,7 +38,7 @@ class CallbackThreadsExecutor(SingleThreadedExecutor):
 def spin_until_future_complete(
     executor: Executor, future: Any, timeout_sec: float | None, ros_time: Callable[[], int]
 ) -> None:
-    """Spin until a future is done, like rclpy's function of this name, but with a time-out in ROS time."""
+    """Spin until a future completes, like rclpy's function of this name, but with a time-out in ROS time."""
     future.add_done_callback(lambda _: executor.wake())
     end = None if timeout_sec is None or timeout_sec < 0 else ros_time() + round(timeout_sec * 1e9)
     remaining = None if end is None else TimeoutObject(timeout_sec or 0.0)

@@ -107,7 +107,7 @@ class ExecuteLocal(Action):
         return list(self._on_exit) if isinstance(self._on_exit, (list, tuple)) else []
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
-        """Return the future that is done when the process has ended and is not respawned."""
+        """Return the future that completes when the process has ended and is not respawned."""
         return self._completion
 
     def get_stdout(self) -> str:

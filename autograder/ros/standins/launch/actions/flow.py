@@ -52,7 +52,7 @@ class Shutdown(EmitEvent):
         self._reason = normalize_to_list_of_substitutions(reason)
 
     def execute(self, context: LaunchContext) -> None:
-        """End the launch; log the name of a process whose exit caused it."""
+        """Shut the launch down. If a process's exit caused the shutdown, log its name first."""
         event = context.get_locals_as_dict().get("event")
         if isinstance(event, ProcessExited):
             get_logger("launch").info("process[%s] was required: shutting down launched system", event.process_name)

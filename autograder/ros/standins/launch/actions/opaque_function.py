@@ -72,5 +72,5 @@ class OpaqueCoroutine(Action):
         self._task = task
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
-        """Return the future that is done when the coroutine is."""
+        """Return the future that completes when the coroutine does."""
         return self._task

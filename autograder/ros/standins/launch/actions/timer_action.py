@@ -92,7 +92,7 @@ class TimerAction(Action):
         self._completion.set_result(None)
 
     async def _sleep(self, context: LaunchContext, seconds: float, cancel: asyncio.Future[None]) -> None:
-        """Wait for `seconds` of wall time, or until `cancel` is done."""
+        """Wait for `seconds` of wall time, or until `cancel` completes."""
         await asyncio.wait([cancel], timeout=seconds)
 
     def _matches(self, event: Event) -> bool:
@@ -103,5 +103,5 @@ class TimerAction(Action):
         return self.actions
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
-        """Return the future that is done when the timer has fired or was cancelled."""
+        """Return the future that completes when the timer has fired or was cancelled."""
         return self._completion

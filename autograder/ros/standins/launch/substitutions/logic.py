@@ -40,12 +40,12 @@ class NotSubstitution(Substitution):
         return f"NotSubstitution({describe_substitutions(self.value)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the opposite truth value."""
+        """Return the opposite Boolean."""
         return _text(not _truth(context, self.value))
 
 
 class _Logical(Substitution):
-    """The base of substitutions that combine several truth values."""
+    """The base of substitutions that combine several Booleans."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
         self.args = [normalize_to_list_of_substitutions(arg) for arg in args]
@@ -104,10 +104,10 @@ def _comparable(value: Any) -> list[Substitution]:
 
 
 def _are_equal(left: str, right: str) -> bool:
-    """Return whether two texts are equal: as truth values, as numbers, or otherwise character by character."""
-    truth_values = {"true": True, "1": True, "false": False, "0": False}
-    if left.lower() in truth_values and right.lower() in truth_values:
-        return truth_values[left.lower()] == truth_values[right.lower()]
+    """Return whether two texts are equal: as Booleans, as numbers, or otherwise character by character."""
+    booleans = {"true": True, "1": True, "false": False, "0": False}
+    if left.lower() in booleans and right.lower() in booleans:
+        return booleans[left.lower()] == booleans[right.lower()]
     try:
         return math.isclose(float(left), float(right))
     except ValueError:

@@ -22,7 +22,7 @@ from .paths import DirectorySubstitution
 
 
 def _normalize_default(value: Any) -> list[Substitution] | None:
-    """Return a default of any type as substitutions; numbers and truth values become text."""
+    """Return a default of any type as substitutions; numbers and Booleans become text."""
     if value is None:
         return None
     items = [value] if isinstance(value, (str, Substitution)) or not isinstance(value, Iterable) else value

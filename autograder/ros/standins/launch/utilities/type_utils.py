@@ -39,7 +39,7 @@ def _split_type(data_type: Any) -> tuple[type, bool]:
 
 
 def is_uniform_list(value: object) -> bool:
-    """Return whether `value` is a list whose items are all truth values, all integers, all floats or all strings."""
+    """Return whether `value` is a list whose items are all Booleans, all integers, all floats or all strings."""
     if not isinstance(value, (list, tuple)):
         return False
     types = {type(item) for item in value}

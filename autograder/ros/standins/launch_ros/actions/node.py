@@ -182,7 +182,7 @@ def _perform(context: LaunchContext, value: SomeSubstitutionsType) -> str:
 
 
 def _parameter_rule(name: str, value: Any) -> str:
-    """Return a parameter as an argument of ``-p``."""
+    """Format a parameter as an argument to ``-p``: ``NAME:=VALUE``."""
     return f"{name}:={yaml.dump(value)}"
 
 
