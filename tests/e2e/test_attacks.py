@@ -28,7 +28,7 @@ from autograder.result.model import Result
 from autograder.run.sandbox import cgroup
 from autograder.suite import suites
 
-DRIVES = frozenset({"room", "pillars", "corridor"})
+DRIVES = frozenset(check.id for check in suites.hidden("02_nodes").checks if check.group == "worlds")
 STALLS = frozenset({"forged protocol"})  # each check waits 15 s for the messages that it claims and never sends
 # The same attack as "slow in real time"; real time takes minutes on a busy machine.
 NIGHTLY = frozenset({"hasty in real time", "seldom in real time", "fixed in real time"})

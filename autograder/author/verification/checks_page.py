@@ -19,7 +19,7 @@ The requirements of a chapter are quoted from the notebook. Each is listed with 
 mutants that break it. If no check covers a requirement, the page gives the reason.
 """
 CHECK_HEADINGS = ("check", "points", "the student reads", "fails in a version that")
-REQUIREMENT_HEADINGS = ("the notebook says", "covered by", "broken by")
+REQUIREMENT_HEADINGS = ("id", "the notebook says", "covered by", "broken by")
 
 
 def checks_page() -> str:
@@ -39,11 +39,13 @@ def _chapter(name: str) -> list[str]:
 def _requirement_row(
     requirement: Requirement, checks: Sequence[Check], named_mutants: Sequence[Mutant]
 ) -> tuple[str, ...]:
+    name = f"`{requirement.id}`"
     if requirement.unchecked:
-        return requirement.text, f"no check: {requirement.unchecked}", ""
+        return name, requirement.text, f"no check: {requirement.unchecked}", ""
     covering_checks = [check for check in checks if requirement.id in check.covers]
     breaking_mutants = dict.fromkeys(m.id for check in covering_checks for m in named_mutants if _fails(m, check))
-    return requirement.text, ", ".join(f"`{check.id}`" for check in covering_checks), ", ".join(breaking_mutants)
+    covering_names = ", ".join(f"`{check.id}`" for check in covering_checks)
+    return name, requirement.text, covering_names, ", ".join(breaking_mutants)
 
 
 def _check_rows(checks: Sequence[Check], named_mutants: Sequence[Mutant]) -> Iterator[tuple[str, ...]]:

@@ -21,5 +21,5 @@ def test_a_conflict_of_a_file_and_a_folder_is_the_student_s_fault(existing: str,
     (package / existing).write_text("")
     (package / "package.xml").write_text("<package><name>wheels</name></package>")
     workspace = Workspace(tmp_path / "ws", activate(), tmp_path)
-    with pytest.raises(StudentError, match=f"wheels/{added} cannot be read: .* A file of that name was to be added"):
+    with pytest.raises(StudentError, match=f"wheels/{added} cannot be read: .* The check adds a file with this name"):
         install_with(workspace, "wheels", [added])
