@@ -11,15 +11,18 @@ from autograder.grade.executed_notebook import MAX_BYTES
 from autograder.grade.reply import MAX_PAGE, MAX_RESULT
 from autograder.harness.launch import MAX_STATUS
 from autograder.plain_text import MAX_NAME, MAX_NAMES
-from autograder.probes.imports import MAX_ALL_BYTES
+from autograder.probes import imports, installed
 from autograder.probes.student_test_reports import MAX_SOURCES
 from autograder.run.fork_server import seccomp
 from autograder.run.lockstep.protocol import MAX_LINE
 from autograder.run.patience import MAX_ANSWER_SECONDS
 from autograder.run.sandbox import limits
 from autograder.run.sandbox.limits import MIB, TreeLimits
-from autograder.submission.intake.files import MAX_FILES, MAX_READ_BYTES, MAX_TOTAL_BYTES
+from autograder.submission.intake.bounds import MAX_MEMORY, MAX_SECONDS
+from autograder.submission.intake.files import MAX_FILES, MAX_READ_BYTES, MAX_SCANNED, MAX_TOTAL_BYTES
 from autograder.submission.intake.notebooks import MAX_CELLS, MAX_VALUES
+from autograder.submission.intake.tar import MAX_HEADER
+from autograder.submission.intake.zip_directory import MAX_EXTRA
 
 HEAD = """# Limits by kind
 
@@ -101,6 +104,19 @@ def rows() -> list[tuple[str, str, str, str]]:
             "test_intake",
         ),
         (
+            "an archive",
+            f"{_mib(MAX_READ_BYTES)} on disk; {MAX_SCANNED:,} headers and parts in all; "
+            f"{MAX_HEADER // 1024} KiB in a tar's header; {MAX_EXTRA} bytes of extra fields in a zip",
+            "intake",
+            "test_archive_costs",
+        ),
+        (
+            "reading a submission",
+            f"{MAX_SECONDS:.0f} s of processor time, {_mib(MAX_MEMORY)}",
+            "intake",
+            "test_archive_costs",
+        ),
+        (
             "a submitted notebook",
             f"{MAX_CELLS:,} cells, {MAX_VALUES:,} commas and brackets",
             "intake",
@@ -149,7 +165,14 @@ def rows() -> list[tuple[str, str, str, str]]:
             "the worker",
             "test_plain_text",
         ),
-        ("Python that is parsed for its imports", f"{_mib(MAX_ALL_BYTES)} in a package", "the worker", "test_imports"),
+        (
+            "Python that is searched for its imports",
+            f"{imports.MAX_BYTES // 1024} KiB in a file; {_mib(imports.MAX_ALL_BYTES)}, {imports.MAX_FILES} files in a "
+            "package",
+            "the check, which fails",
+            "test_imports",
+        ),
+        ("installed metadata", f"{installed.MAX_BYTES // 1024} KiB in a file", "the check, which fails", INSTALLED),
         ("tests that are parsed for their names", _mib(MAX_SOURCES), "the worker", "test_student_test_reports"),
         ("an executed notebook", f"{_mib(MAX_BYTES)}, or it has no outputs", "the worker", ANSWER),
         ("pictures and runs on a page", _mib(MAX_PAGE), "the process that starts the worker", ANSWER),

@@ -172,7 +172,11 @@ class _Dispatch:
                 self._report(f"The worker {address} is rejected: {reason}.")
 
     def _pending_submissions(self, jobs: Sequence[Job]) -> Iterator[_Pending]:
-        """Yield the submissions to send. Store a result for each one that intake rejects."""
+        """Yield the submissions to send. Store a result for each one that intake rejects.
+
+        They are read in this process, because a sandbox for each would take longer than 64 workers need to grade it.
+        Intake limits its time and memory.
+        """
         for job in jobs:
             try:
                 files = read_files(job.path, job.assignment)

@@ -74,8 +74,8 @@ CALLS = Limits(wall_seconds=30.0, cpu_seconds=30)
 # worker, so the worker sandbox has room for six fork bombs at once, and the time that it takes to kill them.
 GRADING_WORKER = Limits(wall_seconds=900.0, memory=6 * GIB, threads=8192, output=4 * MIB, excess_measurements=8)
 NOTEBOOK_WORKER = replace(GRADING_WORKER, wall_seconds=300.0)
-# A worker sandbox in which a submission is only read.
-READING_WORKER = Limits(wall_seconds=120.0, memory=2 * GIB, threads=64)
+# A worker sandbox in which a submission is only read. Intake's own limits of processor time and memory come first.
+READING_WORKER = Limits(wall_seconds=300.0, memory=3 * GIB, threads=64)
 # A worker sandbox of the verification, which runs many jobs. Each job has the wall time of GRADING_WORKER.
 VERIFICATION_WORKER = replace(GRADING_WORKER, wall_seconds=24 * 3600.0)
 WORKER_SCRATCH = 512 * MIB  # bytes of a worker sandbox's file system

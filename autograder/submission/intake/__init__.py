@@ -3,13 +3,15 @@
 A submission is the folder of an assignment (the notebook and `ws/` beside it), a zip or tar archive of such a folder,
 the notebook alone, or a source tree with `src/`. It may be in nested folders or archives, under another name and beside
 other files. Links, devices, absolute paths and paths with `..` are refused, or skipped if they are not needed. The
-number, size and depth of files are limited. Files that tools leave behind are ignored.
+number, size and depth of files are limited, and so are the time and the memory of reading them. Files that tools leave
+behind are ignored.
 
     path -> reading -> files -> answer (which notebook and source tree) -> counting (files in `ws/src`, else cells)
 """
 
 from __future__ import annotations
 
+import hashlib
 import stat
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,6 +20,7 @@ from pathlib import Path, PurePosixPath
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
 from autograder.submission.intake.answer import Answer, broken_sentence, find_answer
+from autograder.submission.intake.bounds import bounded
 from autograder.submission.intake.counting import GradedPackages, count, merge, read_code, with_given
 from autograder.submission.intake.exercises import SOURCE, exercises_of
 from autograder.submission.intake.files import (
@@ -98,7 +101,7 @@ def read_submission(path: Path, assignment: str) -> Submission:
         UsageError: `path` does not exist.
         StudentError: the submission is unsafe, unreadable or unclear, or has neither the notebook nor a package.
     """
-    with student_data("Your submission"):
+    with student_data("Your submission"), bounded():
         contents = read_contents(path, assignment)
         return detect_layout(contents.files, assignment, contents.skipped)
 
@@ -108,7 +111,7 @@ def read_files(path: Path, assignment: str) -> list[SubmittedFile]:
 
     The arguments and errors are those of `read_submission`.
     """
-    with student_data("Your submission"):
+    with student_data("Your submission"), bounded():
         contents = read_contents(path, assignment)
         detect_layout(contents.files, assignment, contents.skipped)
         return contents.files
@@ -140,7 +143,7 @@ def detect_layout(files: Sequence[SubmittedFile], assignment: str, skipped: Sequ
         source,
         extra,
         digest(files),
-        digest(_graded_files(notebook, source, extra, assignment) if graded.packages is None else graded.packages),
+        _graded_digest(notebook, source, extra, graded.packages, assignment),
         graded.packages,
         graded.notices,
         _unused_names(files, skipped, answer, assignment),
@@ -178,6 +181,24 @@ def _extra(files: Sequence[SubmittedFile], answer: Answer) -> tuple[SubmittedFil
         if not (is_source or is_notebook or path.parts[0] in ("ws", "src")):
             extra.append(SubmittedFile(path, file.data, file.executable))
     return tuple(extra)
+
+
+def _graded_digest(
+    notebook: bytes | None,
+    source: Sequence[SubmittedFile],
+    extra: Sequence[SubmittedFile],
+    packages: Sequence[SubmittedFile] | None,
+    assignment: str,
+) -> str:
+    """Return the digest of the files that a grading reads.
+
+    Its first word keeps a grading of packages apart from one that runs a notebook, which may read equal files.
+    """
+    if packages is None:
+        kind, files = "notebook", _graded_files(notebook, source, extra, assignment)
+    else:
+        kind, files = "packages", list(packages)
+    return hashlib.sha256(f"{kind} {digest(files)}".encode()).hexdigest()
 
 
 def _graded_files(

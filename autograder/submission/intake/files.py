@@ -18,9 +18,10 @@ MAX_FILE_BYTES = 16 * 1024 * 1024
 MAX_WRAPPED_BYTES = 64 * 1024 * 1024  # limit for a notebook whose outputs are dropped, and for an archive in an archive
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_READ_BYTES = 256 * 1024 * 1024  # read or decompressed, from one archive and for all files
-# Limit for the decompressed bytes of all archives. A tar is read up to three times: names, possible answers, the rest.
+# Limit for the decompressed bytes of all archives, and one for their compressed bytes. A tar is read up to three times:
+# names, possible answers, the rest.
 MAX_UNPACKED_BYTES = 4 * MAX_READ_BYTES
-MAX_SCANNED = 100_000  # files and folders
+MAX_SCANNED = 100_000  # files, folders, headers of archives and parts of compressed files
 MAX_DEPTH = 16  # parts of a path
 MAX_PATH_BYTES = 200  # file systems allow 255 for each part
 
@@ -51,15 +52,30 @@ class Contents:
     skipped: list[SkippedFile] = field(default_factory=list)
     bytes_in_memory: int = 0
     bytes_read: int = 0  # including decompressed bytes
+    bytes_packed: int = 0  # before they are decompressed
     bytes_unpacked: int = 0  # decompressed, including those of skipped files
     scanned: int = 0
     archives: int = 0
 
     def scan(self) -> None:
-        """Count a file or a folder. Raises StudentError if there are too many."""
+        """Count a file, a folder or a part of an archive. Raises StudentError if there are too many."""
         self.scanned += 1
         if self.scanned > MAX_SCANNED:
             raise unsafe(f"it holds more than {MAX_SCANNED:,} files and folders")
+
+    def count_packed(self, count: int) -> None:
+        """Count bytes that are decompressed, even to nothing. Raises StudentError if there are too many."""
+        self.bytes_packed += count
+        self._limit_unpacking()
+
+    def count_unpacked(self, count: int) -> None:
+        """Count bytes that are read from an archive. Raises StudentError if there are too many."""
+        self.bytes_unpacked += count
+        self._limit_unpacking()
+
+    def _limit_unpacking(self) -> None:
+        if max(self.bytes_packed, self.bytes_unpacked) > MAX_UNPACKED_BYTES:
+            raise unsafe("its archives contain too much data in all")
 
     def remove(self, file: SubmittedFile) -> None:
         """Remove an archive whose files replace it."""

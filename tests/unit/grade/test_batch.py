@@ -6,7 +6,7 @@ import json
 import threading
 import zipfile
 from collections.abc import Callable
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 import pytest
@@ -174,6 +174,15 @@ def test_equal_submissions_are_equal_in_any_archive_or_folder(tmp_path: Path) ->
     alice, bob = (intake.read_submission(path, CHAPTER) for path in (folder, tmp_path / "bob.zip"))
     assert alice.graded_sha256 == bob.graded_sha256
     assert alice.sha256 != bob.sha256
+
+
+def test_a_notebook_that_runs_differs_from_packages_with_the_same_files() -> None:
+    """Otherwise, whoever is graded first would also decide the other student's mark."""
+    notebook = intake.SubmittedFile(PurePosixPath(f"{CHAPTER}.ipynb"), b"{}")
+    other = intake.SubmittedFile(PurePosixPath("pkg/package.xml"), b"<package/>")
+    packages = intake._graded_digest(None, (notebook, other), (), (notebook, other), CHAPTER)
+    runs = intake._graded_digest(notebook.data, (), (other,), None, CHAPTER)
+    assert packages != runs
 
 
 def test_as_many_submissions_are_graded_at_once_as_requested(grade: Callable[..., list[str]]) -> None:

@@ -18,7 +18,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_raw_
 from nbgrader.utils import determine_grade
 
 from autograder.lms.nbgrader.outputs import grade_outputs, sanitized_outputs
-from autograder.lms.nbgrader.restore import restored
+from autograder.lms.nbgrader.restore import MAX_CELL, MAX_CELLS, restored
 from autograder.lms.nbgrader.sanitizing import sanitized_markdown
 from autograder.report.feedback.model import PageView, page_view
 from autograder.result.model import Artifact, CheckResult, Result
@@ -199,3 +199,41 @@ def test_a_page_of_a_students_cells_requests_nothing_from_other_hosts(template: 
     page.feed(html)
     assert page.addresses == []
     assert not re.search(r"<style>[^<]*host\.example", html)
+
+
+def rendered(notebook: nbformat.NotebookNode) -> str:
+    filters = {"markdown2html": sanitized_markdown}
+    html, _ = HTMLExporter(filters=filters).from_notebook_node(notebook)  # type: ignore[no-untyped-call]
+    return str(html)
+
+
+@pytest.mark.parametrize("new_cell", [new_markdown_cell, new_raw_cell, new_code_cell], ids=["Markdown", "raw", "code"])
+def test_a_very_long_cell_of_a_student_is_cut_and_shown_as_plain_text(
+    new_cell: Callable[..., nbformat.NotebookNode],
+) -> None:
+    """A cell of 16 MB kept nbgrader's feedback and formgrader busy for days."""
+    source = "%%bash\n" + "# <b>x</b> **y**\n" * (MAX_CELL // 10)
+    notebook = restored(new_notebook(cells=[new_cell(source)]), new_notebook())
+    assert len(notebook.cells[0].source) < 1.5 * MAX_CELL
+    html = rendered(notebook)
+    assert f"This cell has {len(source):,} characters. Here are the first 20,000." in html
+    assert "The submitted notebook contains all." in html
+    body = html[html.index("This cell has") :]
+    assert not re.search(r"<(?:b|strong|h1|span class)\b", body)
+    assert "# &lt;b&gt;x&lt;/b&gt; **y**" in body
+
+
+def test_usual_cells_and_those_of_the_instructor_are_not_cut() -> None:
+    given = [new_markdown_cell("*given* " * MAX_CELL), new_code_cell("given = 1\n" * MAX_CELL)]
+    own = [new_markdown_cell("x" * MAX_CELL), new_code_cell("y" * MAX_CELL)]
+    notebook = restored(new_notebook(cells=[*given, *own]), new_notebook(cells=given))
+    assert [cell.source for cell in notebook.cells] == [cell.source for cell in (*given, *own)]
+
+
+def test_all_cells_of_a_student_together_are_limited() -> None:
+    cells = [new_markdown_cell(f"{number} " + "\\begin{a}" * (MAX_CELL // 10)) for number in range(100)]
+    notebook = restored(new_notebook(cells=cells), new_notebook())
+    sources = [cell.source for cell in notebook.cells]
+    assert sources[:5] == [cell.source for cell in cells[:5]]
+    assert all("Here are the first 200." in source for source in sources[6:])
+    assert sum(map(len, sources)) < 1.5 * MAX_CELLS

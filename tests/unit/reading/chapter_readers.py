@@ -28,5 +28,5 @@ READERS: dict[str, Reader] = {
         texts("safety_distance 0.5 m is above slow_distance 0.4 m"),
         ("9" * 5000, "٣.٣", "1." + "0" * 5000),
     ),
-    "calls of sleep": Reader(lambda data, folder: sleeping.sleeps(data), altered(PYTHON)),
+    "calls of sleep": Reader(lambda data, folder: sleeping.sleeps(data, "test_guard.py"), altered(PYTHON)),
 }

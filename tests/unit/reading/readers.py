@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import tarfile
 import zipfile
 from collections.abc import Callable
 from itertools import pairwise
@@ -26,6 +27,7 @@ from autograder.harness.stepped import _sum
 from autograder.harness.steps import next_instant, tick_of
 from autograder.probes import (
     calls,
+    given_files,
     imports,
     installed,
     interfaces,
@@ -59,6 +61,8 @@ from tests.unit.reading.samples import (
     SHOWN_ARGUMENTS,
     TRACEBACK,
 )
+
+GIVEN_FILES = {"a/a.py": b"a = 1\n", "a/a.yaml": b"a: 1\nb: [2.0, c]\n"}
 
 
 def _written(name: str, read: Callable[[Path], object]) -> Callable[[bytes, Path], object]:
@@ -132,7 +136,7 @@ def _cell(source: str) -> nbformat.NotebookNode:
     return nbformat.v4.new_code_cell(source)
 
 
-def _zip(folder: Path, data: bytes) -> None:
+def _archived(folder: Path, data: bytes) -> None:
     (folder / "alice.zip").write_bytes(data)
     read = intake.read_submission(folder / "alice.zip", "02_nodes")
     intake.write_tree(read.source, folder / "src")
@@ -143,6 +147,16 @@ def _archive() -> bytes:
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("02_nodes/02_nodes.ipynb", json.dumps(NOTEBOOK))
         archive.writestr("02_nodes/ws/src/wheels/package.xml", MANIFEST)
+    return buffer.getvalue()
+
+
+def _tar() -> bytes:
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w", format=tarfile.PAX_FORMAT, pax_headers={"comment": "ä"}) as archive:
+        for name, data in ((f"{'long ' * 30}/02_nodes.ipynb", json.dumps(NOTEBOOK).encode()), ("src/a", MANIFEST)):
+            info = tarfile.TarInfo(name)
+            info.size, info.mtime = len(data), 1.5  # a fraction needs a header of its own
+            archive.addfile(info, io.BytesIO(data))
     return buffer.getvalue()
 
 
@@ -264,6 +278,11 @@ READERS: dict[str, Reader] = {
         altered(PYTHON),
         (b"(" * 5000, b"\0", b"# coding: foo\n", b"x = " + b"9" * 5000),
     ),
+    "given file": Reader(
+        lambda data, folder: given_files.changed_files({"a/a.py": data, "a/a.yaml": data}, GIVEN_FILES, ("a",)),
+        altered(PYTHON, *GIVEN_FILES.values()),
+        (b"a: 2026-13-01", b"? [a]\n: !!int x", b"x = a" + b".b" * 5000, b"1: 2\na: 3"),
+    ),
     "metadata of an installed package": Reader(
         _written(
             "install/wheels/lib/python3.12/site-packages/wheels-1.0.egg-info/entry_points.txt",
@@ -306,7 +325,8 @@ READERS: dict[str, Reader] = {
         st.text(st.sampled_from("ab/.~\0\ud800 é*\n-"), max_size=40) | st.sampled_from(("a" * 300, "/" * 5000)),
         ("a\0b", "a" * 300, "ws/src/" + "b" * 256 + "/c", "\ud800", "~", "/etc/passwd", ".", "..", "-a", ""),
     ),
-    "archive": Reader(lambda data, folder: _zip(folder, data), altered(_archive())),
+    "archive": Reader(lambda data, folder: _archived(folder, data), altered(_archive())),
+    "tar": Reader(lambda data, folder: _archived(folder, data), altered(_tar())),
     "names in a submission": Reader(
         lambda names, folder: intake.detect_layout(
             [intake.SubmittedFile(PurePosixPath(name), b"") for name in names], "02_nodes"

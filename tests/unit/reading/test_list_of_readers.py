@@ -8,7 +8,7 @@ from autograder.course_paths import ROOT
 
 PARSES = re.compile(
     r"json\.loads?\(|yaml\.(?:safe_)?load|SafeLoader\(|ET\.(?:fromstring|parse)\(|ast\.parse\(|literal_eval|nbformat\.reads?\("
-    r"|\.read_string\(|HeaderParser\(|struct\.unpack|tarfile\.open|zipfile\.ZipFile\(|parse_package_string\(|rosidl_adapter\b"
+    r"|\.read_string\(|HeaderParser\(|struct\.unpack|tarfile\.open|\.frombuf\(|zipfile\.ZipFile\(|parse_package_string\(|rosidl_adapter\b"
 )
 PARTS = ("building", "checks", "grade", "harness", "probes", "run/lockstep", "submission", "suite")
 # Modules whose reader is tested, with the reader's name.
@@ -16,6 +16,8 @@ TRIED = {
     "checks/ch01_package_structure/hidden/run.py": "configuration of 01",
     "grade/run_notebook.py": "outputs of a notebook",
     "submission/intake/archives.py": "archive",
+    "submission/intake/tar.py": "tar",
+    "submission/intake/zip_directory.py": "archive",
     "submission/intake/notebooks.py": "cells of a notebook",
     "building/interfaces/cdr.py": "bytes of a message of the student's own type",
     "building/interfaces/rosidl.py": "definition that is built",
@@ -23,6 +25,7 @@ TRIED = {
     "submission/packages.py": "package.xml by its name",
     "probes/calls.py": "answer of a function",
     "probes/files.py": "imports of a module",
+    "probes/given_files.py": "given file",
     "probes/installed.py": "metadata of an installed package",
     "probes/interfaces.py": "definition of a message",
     "probes/manifest.py": "package.xml whole",
