@@ -4,7 +4,8 @@ A group is a reason for a person to read the submissions, not a verdict. copydet
 every name and every string as one token, so that renaming does not hide a copy.
 
 A submission may try to make the comparison slow. Therefore only the first characters of each text are compared, without
-empty lines, which bounds the time and memory for a pair. The number of pairs whose texts are shown is also limited.
+empty lines and in lines of limited length, which bounds the time and memory for a pair. The number of pairs whose texts
+are shown is also limited.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from autograder.result.model import write_atomically
 
 MIN_MATCH_TOKENS = 50  # about three lines; shorter passages are ignored
 MAX_CHARACTERS = 100_000  # compared per text: about 2,500 lines, which take 0.5 s and 50 MiB
+MAX_LINE = 500  # characters; longer lines are broken
 MAX_PAIRS = 100  # pairs whose texts are shown on the page
 
 Names = tuple[str, ...]
@@ -159,8 +161,13 @@ def write_page(comparison: Comparison, out: Path) -> Path:
 
 
 def _dense(text: str) -> str:
-    """Return a text without empty lines, because the lexer's time is quadratic in the number of consecutive ones."""
-    return "\n".join(line for line in text.splitlines() if line.strip())
+    """Return a text without empty lines and with long lines broken.
+
+    The lexer's time is quadratic in the number of consecutive empty lines, and in the length of a line.
+    """
+    lines = text.splitlines()
+    parts = (line[start : start + MAX_LINE] for line in lines for start in range(0, len(line), MAX_LINE))
+    return "\n".join(part for part in parts if part.strip())
 
 
 def _fingerprint(text: str) -> CodeFingerprint:

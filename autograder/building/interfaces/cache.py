@@ -2,7 +2,8 @@
 
 An entry is a folder named after its key, beside a lock file. Processes that use, build or evict the entry hold the
 lock. The kernel releases locks when a process dies, and a half-built folder never has an entry's name. If the entries
-exceed the limit, those that are not in use are removed.
+exceed the limit, those that are not in use are removed, large ones first. So a few large entries of one student do not
+replace those that a class shares.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from pathlib import Path
 from autograder.run.sandbox.limits import MIB
 
 LIMIT = 512 * MIB  # for all entries together
+LARGE = 1 / 32  # share of the limit above which an entry is large: 16 MiB; the course's message packages need 2 MiB
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 
 
@@ -85,16 +87,20 @@ class Cache:
             shutil.rmtree(folder, ignore_errors=True)
 
     def _evict(self) -> None:
-        """Remove the least recently used entries until the others fit, and the unfinished folders of killed builds."""
-        entries: list[tuple[float, int, Path]] = []
+        """Remove entries until the others fit, and the unfinished folders of killed builds.
+
+        Large entries come first, and among equals those that were used least recently.
+        """
+        entries: list[tuple[bool, float, int, Path]] = []
         for folder in self.root.iterdir():
             with contextlib.suppress(FileNotFoundError):
                 if folder.name.startswith("."):
                     self._remove(folder, folder.name[1:].partition("-")[0])
                 elif _KEY.fullmatch(folder.name):
-                    entries.append((folder.stat().st_mtime, _size(folder), folder))
-        total = sum(size for _, size, _ in entries)
-        for _, size, folder in sorted(entries):
+                    size = _size(folder)
+                    entries.append((size <= LARGE * self._limit, folder.stat().st_mtime, size, folder))
+        total = sum(size for _, _, size, _ in entries)
+        for _, _, size, folder in sorted(entries):
             if total <= self._limit:
                 return
             if self._remove(folder, folder.name):

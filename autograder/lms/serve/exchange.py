@@ -1,7 +1,9 @@
 """Hands in the submissions that students make through nbgrader's exchange.
 
 A submission is a folder STUDENT+ASSIGNMENT+TIME+RANDOM in the course's folder of the exchange. The student owns it and
-can still change it. Therefore, a process that runs as the student packs it, without following links.
+can still change it. Therefore, a process that runs as the student packs it, without following links. The student can
+also slow it down, stop it, and write to its pipe. So the time and the number of bytes that are read from the pipe are
+limited, and a student whose submission cannot be packed has no further turn in the same poll.
 """
 
 from __future__ import annotations
@@ -11,23 +13,28 @@ import hashlib
 import logging
 import os
 import pwd
+import selectors
 import sqlite3
 import stat
 import subprocess
-from collections.abc import Iterator
+import time
+import zlib
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
-from threading import Timer
 
 from autograder.exceptions import UsageError
 from autograder.lms.serve.shared import Refused, Service
 from autograder.notebook.handing_in import MAX_ANSWER
+from autograder.submission.intake.files import MAX_READ_BYTES
 
 LOG = logging.getLogger(__name__)
 LAST_FILE = "submission_secret.txt"  # nbgrader writes it after all others
 POLL_SECONDS = 5.0  # real time between two polls of the exchange
 MAX_PACK_SECONDS = 60.0  # real time in which `tar` has to pack a submission
+_GZIP = 31  # the format of a compressed stream, as `zlib.compressobj` numbers it
 
 
 @dataclass(frozen=True)
@@ -60,12 +67,12 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
         return
     for entry in sorted(os.scandir(inbound), key=lambda item: item.name):
         student, separator, suffix = entry.name.partition("+")
-        status = entry.stat(follow_symlinks=False)
-        if not separator or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):
-            continue
         try:
+            status = entry.stat(follow_symlinks=False)
             owner = pwd.getpwuid(status.st_uid)
-        except KeyError:
+        except (OSError, KeyError):  # it was removed, only its student can access it, or the user does not exist
+            continue
+        if not separator or not stat.S_ISDIR(status.st_mode) or not os.path.lexists(Path(entry.path, LAST_FILE)):
             continue
         if owner.pw_name == student:
             # A student could forge the time in the name, but not this one.
@@ -74,15 +81,26 @@ def find_submissions(inbound: Path) -> Iterator[ExchangeSubmission]:
             yield ExchangeSubmission(Path(entry.path), student, owner.pw_uid, owner.pw_gid, assignment, at)
 
 
+def in_turns(submissions: Iterable[ExchangeSubmission]) -> list[ExchangeSubmission]:
+    """Return the first submission of each student, then the second of each, and so on."""
+    counts: Counter[str] = Counter()
+
+    def turn(submission: ExchangeSubmission) -> int:
+        counts[submission.student] += 1
+        return counts[submission.student]
+
+    return sorted(submissions, key=turn)
+
+
 def pack(submission: ExchangeSubmission) -> bytes:
     """Return a submission as an archive.
 
     Raises:
         UsageError: it is too large, or cannot be packed.
     """
-    is_root = os.geteuid() == 0
+    is_root, deadline = os.geteuid() == 0, time.monotonic() + MAX_PACK_SECONDS
     with subprocess.Popen(
-        ["tar", "--create", "--gzip", "--directory", str(submission.folder), "."],
+        ["tar", "--create", "--directory", str(submission.folder), "."],
         cwd="/",  # tar changes to `--directory` as the student
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -92,21 +110,44 @@ def pack(submission: ExchangeSubmission) -> bytes:
         extra_groups=[] if is_root else None,
     ) as tar:
         assert tar.stdout is not None
-        timer = Timer(MAX_PACK_SECONDS, tar.kill)
-        timer.start()
         try:
-            data = tar.stdout.read(MAX_ANSWER + 1)
-            if len(data) > MAX_ANSWER:
-                tar.kill()
+            data = _compressed(tar.stdout.fileno(), deadline)
+            exit_status = tar.wait(max(0.0, deadline - time.monotonic()))
+        except (TimeoutError, subprocess.TimeoutExpired):
+            raise UsageError(f"it could not be packed within {MAX_PACK_SECONDS:.0f} s") from None
         finally:
-            tar.stdout.close()
-            exit_status = tar.wait()
-            timer.cancel()
-    if len(data) > MAX_ANSWER:
-        raise UsageError(f"its archive is larger than {MAX_ANSWER // 2**20} MiB")
+            tar.kill()
     if exit_status != 0:
         raise UsageError(f"tar ended with {exit_status}")
     return data
+
+
+def _compressed(pipe: int, deadline: float) -> bytes:
+    """Read a pipe to its end, and return its compressed bytes.
+
+    Raises:
+        UsageError: there are too many bytes, before or after the compression.
+        TimeoutError: it does not end before the deadline.
+    """
+    os.set_blocking(pipe, False)  # another process of the student may read a byte that has just arrived
+    compressor, data, size = zlib.compressobj(wbits=_GZIP), bytearray(), 0
+    with selectors.DefaultSelector() as selector:
+        selector.register(pipe, selectors.EVENT_READ)
+        while (remaining_seconds := deadline - time.monotonic()) > 0:
+            selector.select(remaining_seconds)
+            try:
+                chunk = os.read(pipe, 65536)
+            except BlockingIOError:
+                continue
+            size += len(chunk)
+            data += compressor.compress(chunk) if chunk else compressor.flush()
+            if size > MAX_READ_BYTES:
+                raise UsageError(f"its files are larger than {MAX_READ_BYTES // 2**20} MiB in all")
+            if len(data) > MAX_ANSWER:
+                raise UsageError(f"its archive is larger than {MAX_ANSWER // 2**20} MiB")
+            if not chunk:
+                return bytes(data)
+    raise TimeoutError
 
 
 class Exchange:
@@ -120,26 +161,34 @@ class Exchange:
         """Poll the exchange until the process ends."""
         while True:
             try:
-                for submission in await asyncio.to_thread(lambda: list(find_submissions(self._inbound))):
-                    await self._hand_in(submission)
+                await self.hand_in_all(await asyncio.to_thread(lambda: list(find_submissions(self._inbound))))
             except (OSError, sqlite3.Error) as error:
                 if (sentence := f"{self._inbound}: {error}") not in self._logged_texts:
                     self._logged_texts.add(sentence)
                     LOG.warning("%s", sentence)
             await asyncio.sleep(POLL_SECONDS)
 
-    async def _hand_in(self, submission: ExchangeSubmission) -> None:
+    async def hand_in_all(self, submissions: Iterable[ExchangeSubmission]) -> None:
+        """Hand in the new submissions. If one cannot be packed, its student waits for the next poll."""
+        waiting_students: set[str] = set()
+        for submission in in_turns(submissions):
+            if submission.student not in waiting_students and not await self._hand_in(submission):
+                waiting_students.add(submission.student)
+
+    async def _hand_in(self, submission: ExchangeSubmission) -> bool:
+        """Hand in a submission if it is new and the rules allow it. Return False if it could not be packed."""
         service, name = self._service, submission.folder.name
         if submission.assignment not in service.settings.assignments or name in self._logged_texts:
-            return
+            return True
         if service.store.with_key(submission.student, submission.key) is not None:
-            return
+            return True
         try:
             service.require_try_left(submission.student, submission.assignment, submission.at)
             answer = await asyncio.to_thread(pack, submission)
         except (Refused, UsageError, OSError) as error:
             self._logged_texts.add(name)
             LOG.warning("%s in the exchange is not graded: %s", name, getattr(error, "sentence", error))
-            return
+            return isinstance(error, Refused)
         service.store.receive(submission.student, submission.assignment, submission.key, answer, submission.at)
         await service.grader.notify()
+        return True

@@ -82,7 +82,8 @@ class Stepper:
         finally:
             os.close(host_read)
             os.close(host_write)
-        os.set_blocking(write_fd, False)  # a program that does not read must not block the grader
+        for descriptor in (read_fd, write_fd):  # a program must not block the grader
+            os.set_blocking(descriptor, False)
         self._write_fd = write_fd
         self._read_fd = read_fd
         self._buffer = bytearray()
@@ -153,26 +154,29 @@ class Stepper:
         return record
 
     def _read_line(self, timeout: Timeout, on_timeout: Kind) -> bytes:
-        """Return one line, or b'' at the end of the stream."""
+        """Return one line, or b'' at the end of the stream.
+
+        The limits also hold while bytes arrive, because the student's code can write to the pipe, too.
+        """
         start, first_cpu_seconds = time.monotonic(), None
-        deadline = start + patience.bounded(timeout.seconds)
+        deadline, next_check = start + patience.bounded(timeout.seconds), start + _TICK
         while b"\n" not in self._buffer:
             if len(self._buffer) > protocol.MAX_LINE:
                 raise StudentError(diagnose_too_much(self.process.output))
-            remaining_seconds = deadline - time.monotonic()
-            if not self._selector.select(max(0.0, min(_TICK, remaining_seconds))):
-                if remaining_seconds <= 0.0:
-                    raise self._no_answer(on_timeout, f"{timeout.seconds:.0f} s")
-                cpu_seconds = self.process.cpu_seconds()
-                first_cpu_seconds = cpu_seconds if first_cpu_seconds is None else first_cpu_seconds
-                if cpu_seconds - first_cpu_seconds > timeout.cpu_seconds:
-                    raise self._no_answer(on_timeout, f"{timeout.cpu_seconds:.0f} s of computing")
-                self._require_patience(time.monotonic() - start)
-                continue
-            chunk = os.read(self._read_fd, 65536)
-            if not chunk:
+            remaining_seconds = min(deadline, next_check) - time.monotonic()
+            if self._selector.select(max(0.0, remaining_seconds)) and not self._fill_buffer():
                 return b""
-            self._buffer += chunk
+            now = time.monotonic()
+            if b"\n" in self._buffer or now < min(deadline, next_check):
+                continue
+            if now >= deadline:
+                raise self._no_answer(on_timeout, f"{timeout.seconds:.0f} s")
+            next_check = now + _TICK
+            cpu_seconds = self.process.cpu_seconds()
+            first_cpu_seconds = cpu_seconds if first_cpu_seconds is None else first_cpu_seconds
+            if cpu_seconds - first_cpu_seconds > timeout.cpu_seconds:
+                raise self._no_answer(on_timeout, f"{timeout.cpu_seconds:.0f} s of computing")
+            self._require_patience(now - start)
         elapsed_seconds = time.monotonic() - start
         self._waited_seconds += elapsed_seconds
         patience.add_answer_time(elapsed_seconds)
@@ -180,6 +184,15 @@ class Stepper:
         line, _, next_lines = bytes(self._buffer).partition(b"\n")
         self._buffer = bytearray(next_lines)
         return line + b"\n"
+
+    def _fill_buffer(self) -> bool:
+        """Read the available bytes. Return whether more may follow."""
+        try:
+            chunk = os.read(self._read_fd, 65536)
+        except BlockingIOError:  # the student's code has opened the pipe, too, and was faster
+            return True
+        self._buffer += chunk
+        return bool(chunk)
 
     def _require_patience(self, waiting_seconds: float = 0.0) -> None:
         """Raise a StudentError if all answers, and the current one after `waiting_seconds`, have taken too long."""

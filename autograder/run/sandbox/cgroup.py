@@ -2,7 +2,8 @@
 
 `prlimit --nproc` also limits the number of processes, but the kernel does not apply it to root (setrlimit(2),
 RLIMIT_NPROC). Watching is not enough, because a fork bomb grows faster than it can be counted. Only control groups
-count memory that no process has mapped (files in memory, buffers of sockets, inodes). See cgroups(7), versions 1 and 2.
+count memory that no process has mapped (files in memory, buffers of sockets, inodes), and the processor time of ended
+processes for which no parent has waited. See cgroups(7), versions 1 and 2.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ _NUMBERS = itertools.count()
 _PROCESS = os.urandom(6).hex()
 _NAME = "autograder"
 _LEAF = "worker"
+_COUNTER = {"cpuacct": {"cpuacct.usage": 0}}  # of processor time, in version 1; in version 2, every group has one
 _CLOSE_SECONDS = 5.0  # maximum time until the processes of a group have ended
 _TICK = 0.005  # s between two attempts to remove a group
 _STALE = 3600.0  # s; an empty group that is older was left behind by a grader that was killed
@@ -73,16 +75,16 @@ class ControlGroup:
                 time.sleep(_TICK)
 
 
-def make(limits: Limits) -> ControlGroup:
+def make(limits: Limits, *, counts_time: bool = False) -> ControlGroup:
     """Return a new group with the limits that this machine supports, possibly none.
 
     The limits are above `Limits.memory` and `Limits.threads`, so that the watcher notices an excess first, because its
-    diagnosis is better.
+    diagnosis is better. If `counts_time` is true, the group also counts processor time.
     """
     memory = 2 * (limits.memory + limits.scratch)
     values = {"pids": {"pids.max": limits.tasks}, "memory": {"memory.max": memory, "memory.limit_in_bytes": memory}}
     number, folders = next(_NUMBERS), {}
-    for controller, values_by_file in values.items():
+    for controller, values_by_file in {**values, **(_COUNTER if counts_time else {})}.items():
         parent = _parent_folder(controller)
         if parent is None:
             continue
@@ -102,9 +104,9 @@ def make(limits: Limits) -> ControlGroup:
 def make_nested(limits: Limits, user: int | None) -> ControlGroup:
     """Return a new group whose processes, which run as `user` if given, can create groups for their children.
 
-    The processes cannot change the limits of the new group.
+    The processes cannot change the limits of the new group. It counts their processor time, see `used_seconds`.
     """
-    group = make(limits)
+    group = make(limits, counts_time=True)
     entry_folders = {}
     for controller, folder in group.by_controller.items():
         subtree_control, leaf = folder / "cgroup.subtree_control", folder / _LEAF
@@ -118,6 +120,31 @@ def make_nested(limits: Limits, user: int | None) -> ControlGroup:
                 os.chown(path, user, user)
         entry_folders[controller] = leaf if leaf.exists() else folder
     return replace(group, entry_folders=entry_folders)
+
+
+def used_seconds() -> float | None:
+    """Return the processor time, in s, of all processes of this worker sandbox so far; None if no group counts it."""
+    file = _time_file()
+    if file is None:
+        return None
+    if file.name == "cpuacct.usage":
+        return int(file.read_text()) / 1e9
+    return int(dict(line.split() for line in file.read_text().splitlines())["usage_usec"]) / 1e6
+
+
+@cache
+def _time_file() -> Path | None:
+    return time_file(_read(Path("/proc/self/mountinfo")))
+
+
+def time_file(mountinfo: str) -> Path | None:
+    """Return the file with the processor time of the worker sandbox in which this process runs, or None.
+
+    A worker sandbox sees nothing but its own group of each controller. So the group itself is a mount only there.
+    """
+    mounts = (Path(line.split()[4]) for line in mountinfo.splitlines())
+    files = (mount / name for mount in mounts for name in ("cpuacct.usage", "cpu.stat"))
+    return next((file for file in files if file.parent.name.startswith(f"{_NAME}-") and file.is_file()), None)
 
 
 def bounds() -> frozenset[str]:

@@ -116,6 +116,19 @@ def test_the_limit_on_entries_holds_even_if_many_are_created_at_once(tmp_path: P
     assert len(list(tmp_path.rglob("file"))) == 2
 
 
+def test_large_entries_replace_each_other_and_not_small_ones(tmp_path: Path) -> None:
+    def fill_much(folder: Path) -> None:
+        (folder / "file").write_bytes(b"x" * 12_000)
+
+    cache = Cache(tmp_path, limit=32_000)
+    for used, key in enumerate((A, B, C)):
+        os.utime(cache.get(key, fill), (used, used))
+    for number in range(8):
+        cache.get(f"{number:040x}", fill_much)
+    sizes = [path.stat().st_size for path in tmp_path.rglob("file")]
+    assert sorted(sizes) == [1000] * 3 + [12_000] * 2
+
+
 def test_an_entry_is_evicted_only_when_no_longer_in_use(tmp_path: Path) -> None:
     cache = Cache(tmp_path, limit=1)
     with cache.use(A, fill) as entry, cache.use(A, fill) as same_entry:

@@ -261,6 +261,21 @@ def test_lexing_and_comparing_take_time_proportional_to_the_text(part: str) -> N
     assert max(long) <= 10_000
 
 
+def test_the_lexer_gets_no_long_and_no_empty_lines() -> None:
+    r"""For each `\N{`, it looks for the end of the name up to the end of the line."""
+    text = "'\\N{" * 2_000 + " " * 2_000 + "\n\nend"
+    lines = similar._dense(text).split("\n")
+    assert max(map(len, lines)) == similar.MAX_LINE
+    assert all(line.strip() for line in lines)
+    assert "".join(lines).replace(" ", "") == "".join(text.split())
+
+
+def test_a_renamed_copy_in_one_long_line_is_found() -> None:
+    calls = {"alice": "speed(front, 1), ", "bob": "rate(ahead, 1), "}
+    (group,) = compare({name: f"values = [{call * 200}]" for name, call in calls.items()}, "", 0.5).groups
+    assert group.names == ("alice", "bob")
+
+
 def test_only_the_texts_of_the_most_similar_pairs_are_shown(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(similar, "MAX_PAIRS", 3)
     codes = {name: f"{OWN}{OTHER}# {name}" for name in "abcdef"} | {"g": OWN}

@@ -117,6 +117,48 @@ def test_a_program_that_computes_without_end_is_not_waited_for(host: Open, monke
         host("while True: pass").wait_ready()
 
 
+TRICKLE = """
+import time
+end = time.monotonic() + 10.0
+while time.monotonic() < end:
+    os.write(write, b" ")
+    {pause}
+"""
+SLEEP, COMPUTE = "time.sleep(0.02)", "used = time.process_time()\n    while time.process_time() < used + 0.02: pass"
+
+
+def test_bytes_that_arrive_one_by_one_do_not_extend_the_wait_for_an_answer(
+    host: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stepper, "START_TIMEOUT", Timeout(0.7, 10.0))
+    assert _kind(host(TRICKLE.format(pause=SLEEP)).wait_ready) is Kind.NEVER_STARTED
+
+
+def test_bytes_that_arrive_one_by_one_do_not_hide_endless_computing(
+    host: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stepper, "START_TIMEOUT", Timeout(600.0, 0.2))
+    with pytest.raises(StudentError, match="did not start to spin within 0 s of computing"):
+        host(TRICKLE.format(pause=COMPUTE)).wait_ready()
+
+
+def test_bytes_that_arrive_one_by_one_use_up_the_time_budget(host: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(patience._Budget, "answer_seconds", 0.0)
+    monkeypatch.setattr(patience._Budget, "deadline", time.monotonic() + 600.0)
+    monkeypatch.setattr(patience, "MAX_ANSWER_SECONDS", 0.5)
+    assert _kind(host(TRICKLE.format(pause=SLEEP)).wait_ready) is Kind.TIMED_OUT
+
+
+def test_a_program_that_takes_its_own_bytes_back_does_not_block_the_grader(
+    host: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The student's code can open the grader's end of the pipe, too, and read faster than the grader."""
+    monkeypatch.setattr(stepper, "START_TIMEOUT", Timeout(0.5, 10.0))
+    program = host("signal.alarm(5)  # ends the program\nsignal.pause()")
+    monkeypatch.setattr(program._selector, "select", lambda timeout: ["a byte that is gone"])
+    assert _kind(program.wait_ready) is Kind.NEVER_STARTED
+
+
 @pytest.mark.parametrize(
     "forged",
     [

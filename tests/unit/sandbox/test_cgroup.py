@@ -105,6 +105,21 @@ def test_a_worker_sandbox_with_version_2_has_a_group_beside_those_of_its_inner_s
     assert (folder / "cgroup.procs").read_text() == ""
 
 
+@pytest.mark.parametrize(("name", "text"), [("cpuacct.usage", "2500000000\n"), ("cpu.stat", "usage_usec 2500000\n")])
+def test_the_processor_time_of_a_worker_sandbox_is_read_in_both_versions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, text: str
+) -> None:
+    memory, own = tmp_path / "autograder-0123456789ab-6", tmp_path / "autograder-0123456789ab-7"
+    _hierarchy(tmp_path, "other", memory.name, own.name)
+    for folder in (tmp_path / "other", own):
+        (folder / name).write_text(text)
+    lines = [f"40 31 0:30 /a {folder} rw - cgroup cgroup rw\n" for folder in (tmp_path / "other", memory, own)]
+    assert cgroup.time_file("".join(lines[:2])) is None
+    assert cgroup.time_file("".join(lines)) == own / name
+    monkeypatch.setattr(cgroup, "_time_file", lambda: own / name)
+    assert cgroup.used_seconds() == 2.5
+
+
 @pytest.mark.skipif("memory" not in cgroup.bounds(), reason="no control group of memory can be made")
 def test_memory_that_no_process_has_mapped_is_bounded(tmp_path: Path) -> None:
     code = "import os, time; f = os.memfd_create('m'); [os.write(f, bytes(1 << 20)) for _ in range(200)]; print('all')"

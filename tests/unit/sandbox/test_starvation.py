@@ -4,13 +4,25 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
+from autograder.run.sandbox import Isolation, Limits, cgroup
 from autograder.run.sandbox.procfs import TICK, CpuTime, ThreadTime
 from autograder.run.sandbox.starvation import CpuUse, measure_use, starved_seconds, used_seconds
+from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
 
 MAIN, CHILD = 11, 12  # process ids, and MAIN's thread
+
+
+def can_count_time() -> bool:
+    """Return whether this machine has a control group that counts the processor time of a worker sandbox."""
+    group = cgroup.make(Limits(), counts_time=True)
+    files = [folder / name for folder in group.folders for name in ("cpuacct.usage", "cpu.stat")]
+    is_counted = any(file.is_file() for file in files)
+    group.close()
+    return is_counted
 
 
 @pytest.mark.parametrize(
@@ -42,6 +54,39 @@ def test_the_time_of_a_started_process_and_of_its_children_is_found_after_their_
     before = measure_use(())
     subprocess.run([sys.executable, "-c", parent], check=True)
     assert used_seconds(before, measure_use(())) > 0.2 - 2 * TICK
+
+
+def test_time_that_a_control_group_has_counted_is_used_instead_of_that_of_processes() -> None:
+    before, after = CpuUse({}, {MAIN: CpuTime(1.0)}, total=4.0), CpuUse({}, {MAIN: CpuTime(1.5)}, total=7.0)
+    assert used_seconds(before, after) == pytest.approx(3.0)
+    assert used_seconds(replace(before, total=None), after) == pytest.approx(0.5)
+
+
+BURN = """
+import os, signal, time
+signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+for _ in range(4):
+    if os.fork() == 0:
+        while time.process_time() < 0.2: pass
+        os._exit(0)
+try:
+    os.wait()  # returns when no child is left
+except ChildProcessError:
+    pass
+"""
+MEASURE = f"""
+import subprocess, sys
+from autograder.run.sandbox.starvation import measure_use, used_seconds
+before = measure_use(())
+subprocess.run([sys.executable, "-c", {BURN!r}], check=True)
+print(used_seconds(before, measure_use(())))
+"""
+
+
+@pytest.mark.skipif(not can_count_time(), reason="no control group that counts processor time can be made")
+def test_the_time_of_children_for_which_their_parent_does_not_wait_is_known_with_a_control_group() -> None:
+    report = run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", MEASURE], Isolation.BUBBLEWRAP)
+    assert float(report.output) > 4 * 0.2 - 8 * TICK, report.output
 
 
 def test_without_processes_nothing_is_starved() -> None:
