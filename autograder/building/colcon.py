@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import glob
 import os
+import shutil
 import sys
 from collections.abc import Iterable
 from dataclasses import replace
@@ -43,8 +44,8 @@ def colcon_command(workspace: Workspace, folders: Iterable[Path], verb: str, *op
 def colcon_build(workspace: Workspace, folders: Iterable[Path], *selection: str) -> None:
     """Run `colcon build` on a workspace, without a network.
 
-    The build can write only to the workspace. `folders` are the folders of its packages, and `selection` contains
-    colcon's options that select some of the packages.
+    The build can write only to the workspace, and in it only to a copy of `src`: checks read what was handed in.
+    `folders` are the folders of its packages, and `selection` contains colcon's options that select some of them.
 
     Raises:
         StudentError: the build failed, or `require_contained` rejects its files. The detail is the end of the output.
@@ -52,7 +53,10 @@ def colcon_build(workspace: Workspace, folders: Iterable[Path], *selection: str)
     """
     with workspace.private_folder() as folder:
         overlay = cmake_overlay.write_overlay(workspace.ros.prefixes, folder / "cmake-overlay")
-        output, exit_reason, status = _run(workspace, overlay, colcon_command(workspace, folders, "build", *selection))
+        source = shutil.copytree(workspace.root / "src", folder / "src", symlinks=True)
+        mounts = (Mount(workspace.root / "src", writable=True, source=source), Mount(overlay))
+        command = colcon_command(workspace, folders, "build", *selection)
+        output, exit_reason, status = _run(workspace, overlay, mounts, command)
         output = output.replace(str(folder), "~")
     if exit_reason is not ExitReason.EXITED or status != 0:
         # Two gradings of the same submission use different folders for the workspace, which students know as ws.
@@ -64,7 +68,9 @@ def colcon_build(workspace: Workspace, folders: Iterable[Path], *selection: str)
     require_contained(workspace.install)
 
 
-def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, ExitReason | None, int | None]:
+def _run(
+    workspace: Workspace, overlay: Path, mounts: tuple[Mount, ...], command: list[str]
+) -> tuple[str, ExitReason | None, int | None]:
     spec = workspace.sandbox(BUILD)
     environment = {
         **spec.environment,
@@ -72,7 +78,7 @@ def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, 
         "COLCON_HOME": str(workspace.scratch),
         "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
     }
-    mounts = (*spec.mounts, Mount(RUNNER), Mount(workspace.root, writable=True), Mount(overlay))
+    mounts = (*spec.mounts, Mount(RUNNER), Mount(workspace.root, writable=True), *mounts)
     spec = replace(spec, workdir=workspace.root, mounts=mounts, environment=environment, network=False)
     with launch(command, spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)

@@ -162,6 +162,17 @@ def test_a_build_uses_no_folder_that_an_earlier_build_could_write_to(workspace: 
     assert not list(workspace.scratch.rglob("*.cmake"))
 
 
+def test_a_build_does_not_change_the_sources_that_checks_read(workspace: Workspace) -> None:
+    source = workspace.root / "src" / "good"
+    changes = "open('good/__init__.py', 'w').write('X = 1'); os.remove('resource/good'); open('../new.py', 'w')"
+    with (source / "setup.py").open("a") as file:
+        file.write(f"import os; {changes}\n")
+    assert build_workspace(workspace, ("good",), may_fail=True).diagnoses["good"] is OK
+    assert (source / "good/__init__.py").read_text() == ""
+    assert (source / "resource/good").exists()
+    assert not (workspace.root / "src/new.py").exists()
+
+
 def test_nothing_is_installed_through_a_link_that_a_failed_build_left(
     workspace: Workspace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
