@@ -3,6 +3,7 @@
 from autograder.author.verification.attack_writer import Chapter
 from autograder.author.verification.payloads import (
     BLOCK_REPORT,
+    FORGE_NAMED_REPORT,
     FORGE_PASSES,
     FORGE_REPORT,
     FORGE_VERDICTS,
@@ -16,6 +17,7 @@ from autograder.author.verification.verdicts import Attack
 
 __all__ = [
     "BLOCK_REPORT",
+    "FORGE_NAMED_REPORT",
     "FORGE_PASSES",
     "FORGE_REPORT",
     "FORGE_VERDICTS",

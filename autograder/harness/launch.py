@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from rcl_interfaces.srv import GetParameters
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 
 import autograder
 from autograder.exceptions import StudentError
@@ -97,8 +97,7 @@ class LaunchHarness(contextlib.ExitStack):
 
     For example::
 
-        with LaunchHarness(workspace, "bringup", "robot.launch.py", {"speed": "0.3"},
-                       subscribes={"/cmd_vel": Twist}) as harness:
+        with LaunchHarness(workspace, "bringup", "robot.launch.py", subscribes={"/cmd_vel": Twist}) as harness:
             harness.wait_for(lambda: "/driver" in harness.nodes(), 20.0)
             harness.parameters("/driver", "speed")
             harness.interrupt(20.0)
@@ -112,6 +111,7 @@ class LaunchHarness(contextlib.ExitStack):
         file: the launch file's name.
         arguments: launch arguments by name.
         subscribes: topics that the grader subscribes to from the start, with their types.
+        publishes: topics that the grader publishes on as a sensor does, best effort, with their types.
         environment: environment variables that are set for the launch.
 
     Attributes:
@@ -129,19 +129,19 @@ class LaunchHarness(contextlib.ExitStack):
         arguments: Mapping[str, str] | None = None,
         *,
         subscribes: Mapping[str, type] | None = None,
+        publishes: Mapping[str, type] | None = None,
         environment: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__()
-        self.another = partial(
-            LaunchHarness, workspace, package, file, arguments, subscribes=subscribes, environment=environment
-        )
+        topics = {"subscribes": subscribes, "publishes": publishes}
+        self.another = partial(LaunchHarness, workspace, package, file, arguments, **topics, environment=environment)
         self._domain = Domain(workspace.domain + next(_DOMAIN_OFFSETS))
         node_sandbox = sandbox(replace(workspace, domain=self._domain.number))
         self._sandbox = replace(node_sandbox, environment={**node_sandbox.environment, **(environment or {})})
         assignments = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, the launch itself has to pass Ctrl-C on.
         self._command = ("launch", "--noninteractive", package, file, *assignments)
-        self._subscribes = dict(subscribes or {})
+        self._subscribes, self._publishes = dict(subscribes or {}), dict(publishes or {})
         self._received: dict[str, list[Any]] = {topic: [] for topic in self._subscribes}
         self._status_text = b""
 
@@ -152,6 +152,8 @@ class LaunchHarness(contextlib.ExitStack):
         profile = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         for topic, kind in self._subscribes.items():
             self._grader_node.subscribe(topic, kind, _append_to(self._received[topic]), profile)
+        create = self._grader_node.node.create_publisher
+        self._publishers = {name: create(kind, name, qos_profile_sensor_data) for name, kind in self._publishes.items()}
         record_data("The programs of the launch")
         self._status_pipe, write_end = os.pipe()
         self.callback(os.close, self._status_pipe)
@@ -210,6 +212,10 @@ class LaunchHarness(contextlib.ExitStack):
     def subscribers(self, topic: str) -> list[str]:
         """Return the full names of the nodes that subscribe to `topic`, except the grader's."""
         return _names_of(self._grader_node.subscriptions_of(topic))
+
+    def publish(self, topic: str, message: Any) -> None:
+        """Publish a message on a topic of `publishes`."""
+        self._publishers[topic].publish(message)
 
     def messages(self, topic: str) -> list[Any]:
         """Return the messages that were received on a topic of `subscribes`."""

@@ -1,7 +1,7 @@
 """Compares the imports of a package's sources with the dependencies in package.xml. Sources are parsed and never run.
 
 rosdep installs the packages in package.xml before a build, so an undeclared import works only on its author's machine.
-Files that are too large or not Python are left out, and so are files beyond `MAX_FILES`.
+A file that cannot be searched could contain any import, so it fails the check.
 """
 
 from __future__ import annotations
@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from autograder.probes.files import parse_python, plain_files, read_plain
+from autograder.probes.files import plain_files, read_limited, search_python
 from autograder.probes.manifest import Manifest
 from autograder.suite import CheckFailed
 
 MAX_FILES = 300
 MAX_BYTES = 256 * 1024
 MAX_ALL_BYTES = 4 * 1024 * 1024  # bytes of all parsed files of a package
-SKIPPED_FOLDERS = frozenset({"build", "install", "log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
+# What tools leave in any folder, and colcon in the folder in which it runs. Elsewhere, a module can be called log.
+SKIPPED_FOLDERS = frozenset({"/build", "/install", "/log", "__pycache__", ".ipynb_checkpoints", ".pytest_cache"})
 
 # The rosdep keys of common modules that are not ROS packages. A ROS package's key is its own name.
 KEYS = {
@@ -67,7 +68,7 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
         without: the folders whose files are not read.
 
     Raises:
-        CheckFailed: together, these files are larger than `MAX_ALL_BYTES`.
+        CheckFailed: a file is too large or is not Python, or there are too many files or bytes in all.
     """
     first_party = {path.parent.name for path in package.glob("*/__init__.py")} | {package.name}
     by_module: dict[str, list[str]] = {}
@@ -79,23 +80,28 @@ def imported(package: Path, *, within: Collection[str] = (), without: Collection
             continue
         # A test can import the modules beside it, because pytest puts their folder on the path.
         siblings = {sibling.stem for sibling in path.parent.glob("*.py")} if top == "test" else set()
-        text = _text(path)
-        remaining -= len(text)
+        name = f"{package.name}/{file}"
+        source = read_limited(path, MAX_BYTES, name)
+        remaining -= len(source)
         if remaining < 0:
             raise CheckFailed(
                 f"{package.name} contains more than {MAX_ALL_BYTES // 2**20} MiB of Python, which is too much "
                 "to search for imports: keep generated files out of the package."
             )
-        for module in modules(text) - first_party - siblings - sys.stdlib_module_names:
+        for module in modules(source, name) - first_party - siblings - sys.stdlib_module_names:
             by_module.setdefault(module, []).append(str(file))
     return tuple(Import(module, tuple(files)) for module, files in sorted(by_module.items()))
 
 
 @lru_cache(MAX_FILES)  # several checks read the same files
-def modules(text: str) -> frozenset[str]:
-    """Return the names of the top-level modules that a source text imports; none if it is not Python."""
+def modules(source: bytes, name: str) -> frozenset[str]:
+    """Return the names of the top-level modules that the source of a file imports.
+
+    Raises:
+        CheckFailed: it is too large or is not Python. The message calls it `name`.
+    """
     names: set[str] = set()
-    for node in ast.walk(parse_python(text) or ast.Module([], [])):
+    for node in ast.walk(search_python(source, MAX_BYTES, name)):
         if isinstance(node, ast.Import):
             names.update(alias.name.split(".")[0] for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
@@ -127,7 +133,3 @@ def describe(imports: Collection[Import]) -> str:
 
 def _key_suffix(item: Import) -> str:
     return f" ({item.keys[0]})" if item.keys[0] != item.module else ""
-
-
-def _text(path: Path) -> str:
-    return (read_plain(path, MAX_BYTES) or b"").decode(errors="replace")

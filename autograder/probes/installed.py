@@ -6,15 +6,15 @@ Only plain files are read. No link out of the install space is followed, and not
 from __future__ import annotations
 
 import configparser
-import contextlib
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from email.parser import HeaderParser
 from pathlib import Path
 
-from autograder.probes.files import plain_files, read_below, read_plain
-from autograder.submission.reading import reading
+from autograder.probes.files import plain_files, read_below, read_limited, read_plain
+from autograder.submission.reading import reading, reason
+from autograder.suite import CheckFailed
 
 MAX_FILES = 2000
 MAX_BYTES = 256 * 1024
@@ -46,7 +46,11 @@ class Installed:
 
 
 def inspect_package(install: Path, package: str) -> Installed:
-    """Return the installed files of a package; there are none if it was not installed."""
+    """Return the installed files of a package; there are none if it was not installed.
+
+    Raises:
+        CheckFailed: there are more than `MAX_FILES`, or the metadata are too large or cannot be parsed.
+    """
     with reading(f"The files that colcon installed for {package}"):
         return _inspect_package(install, package)
 
@@ -88,7 +92,8 @@ def _recorded_files(install: Path, package: str) -> frozenset[str]:
 
 
 def _join_files(folders: list[Path], name: str) -> str:
-    return "\n".join((read_plain(folder / name, MAX_BYTES) or b"").decode(errors="replace") for folder in folders)
+    files = [read_limited(folder / name, MAX_BYTES, f"The installed {folder.name}/{name}") for folder in folders]
+    return "\n".join(data.decode(errors="replace") for data in files)
 
 
 def _executables(folder: Path) -> tuple[str, ...]:
@@ -109,8 +114,10 @@ def _is_added_by_colcon(name: str) -> bool:
 
 def _programs(text: str) -> dict[str, str]:
     parser = configparser.ConfigParser(delimiters=("=",), interpolation=None, strict=False)
-    with contextlib.suppress(configparser.Error):
+    try:
         parser.read_string(text)
+    except configparser.Error as error:
+        raise CheckFailed(f"The installed entry_points.txt cannot be parsed: {reason(error)}.") from None
     entries = parser.items("console_scripts") if parser.has_section("console_scripts") else []
     return {name: entry.partition(":")[0].strip() for name, entry in entries}
 

@@ -10,6 +10,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
+from autograder.harness.inflow import Inflow
 from autograder.ros.discovery import fast_discovery
 
 DEPTH = 10  # more messages than a publisher should keep
@@ -26,8 +27,17 @@ def count_kept_messages(node: Node, topic: str, kind: type) -> int:
         node: a node in the domain of the publisher. The new subscription has a separate context.
         topic: the fully qualified name of the topic.
         kind: the type of the topic.
+
+    Raises:
+        StudentError: the messages are too large. They are counted, and never parsed.
     """
-    received: list[object] = []
+    received, inflow = 0, Inflow()
+
+    def receive(data: bytes) -> None:
+        nonlocal received
+        inflow.add(topic, len(data))
+        received += 1
+
     context = Context()
     with fast_discovery():
         rclpy.init(args=[], context=context, domain_id=node.context.get_domain_id())
@@ -36,14 +46,14 @@ def count_kept_messages(node: Node, topic: str, kind: type) -> int:
     executor.add_node(late_node)
     try:
         profile = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        late_node.create_subscription(kind, topic, received.append, profile)
+        late_node.create_subscription(kind, topic, receive, profile, raw=True)
         deadline = time.monotonic() + JOIN_SECONDS
         while not received and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
         deadline = time.monotonic() + FURTHER_SECONDS
-        while time.monotonic() < deadline and len(received) < DEPTH:  # so that a publisher cannot fill the memory
+        while time.monotonic() < deadline and received < DEPTH:  # so that a publisher cannot fill the memory
             executor.spin_once(timeout_sec=0.05)
-        return len(received)
+        return received
     finally:
         executor.shutdown()
         late_node.destroy_node()

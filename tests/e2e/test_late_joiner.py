@@ -11,8 +11,12 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
+from autograder.exceptions import StudentError
+from autograder.harness.inflow import Inflow
+from autograder.probes import late_joiner
 from autograder.probes.late_joiner import count_kept_messages
 from autograder.ros.domains import Domain
+from autograder.run.sandbox.limits import MessageLimits
 
 
 @pytest.fixture
@@ -35,3 +39,14 @@ def test_a_late_joiner_counts_the_messages_that_a_publisher_keeps(node: Node, de
     for number in range(5):
         publisher.publish(String(data=str(number)))
     assert count_kept_messages(node, "/status", String) == depth
+
+
+def test_messages_that_are_too_large_are_refused(node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(late_joiner, "Inflow", lambda: Inflow(MessageLimits(messages=10, size=10_000)))
+    publisher = node.create_publisher(
+        String, "/status", QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    )
+    for _ in range(3):
+        publisher.publish(String(data="x" * 6_000))
+    with pytest.raises(StudentError, match="on /status, but the grader accepts at most 10 messages"):
+        count_kept_messages(node, "/status", String)

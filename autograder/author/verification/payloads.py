@@ -156,6 +156,27 @@ for _folder in _pathlib.Path(__file__).resolve().parents[2].glob("build/*/"):
         pass
 """
 
+# For setup.py: the same, with the name of the run, which it reads from colcon's log and from the arguments of colcon.
+# Every test file of the package passes in the report.
+FORGE_NAMED_REPORT = """
+import glob as _glob, os as _os, pathlib as _pathlib, re as _re
+_files = _glob.glob(_os.path.expanduser("~/colcon-log/*/logger_all.log")) + _glob.glob("/proc/[0-9]*/cmdline")
+for _file in _files:
+    try:
+        _run_name = _re.search(r"junit_suite_name=([0-9a-f]{16})", open(_file, errors="replace").read())
+    except OSError:
+        continue
+    if _run_name:
+        _package = _pathlib.Path(__file__).resolve().parent
+        _cases = "".join(
+            f'<testcase classname="{_package.name}.test.{_path.stem}" name="{_path.stem}"/>'
+            for _path in _package.glob("test/test_*.py")
+        )
+        (_package.parents[1] / "build" / _package.name / "pytest.xml").write_text(
+            f'<testsuites><testsuite name="{_run_name[1]}">{_cases}</testsuite></testsuites>'
+        )
+"""
+
 # For setup.py: creates a folder where `colcon test` writes its report.
 BLOCK_REPORT = (
     FORGE_REPORT.partition("    try:")[0]

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from autograder.checking.attacks import BLOCK_REPORT, FORGE_REPORT, STEAL_SECRETS, TELL_ALL, Attack, Chapter
+from autograder.checking.attacks import (
+    BLOCK_REPORT,
+    FORGE_NAMED_REPORT,
+    FORGE_REPORT,
+    STEAL_SECRETS,
+    TELL_ALL,
+    Attack,
+    Chapter,
+)
+from autograder.checking.probes import imports
 
 CHAPTER = Chapter("01_package_structure")
 SETUP, TESTS = "square_dance/setup.py", "square_dance/test"
@@ -31,6 +40,18 @@ from square_dance.utils import steps
 TestReference = tell(inspect.getsource(steps) + inspect.getsource(dancer))
 """
 )
+
+
+def _write_long_files(folder: Path) -> None:
+    """Write packages that declare no dependency, and make each file with imports too large to search."""
+    CHAPTER.write()(folder)
+    for package in (folder / "src").iterdir():
+        manifest = package / "package.xml"
+        lines = manifest.read_text().splitlines(keepends=True)
+        manifest.write_text("".join(line for line in lines if "depend>" not in line))
+        for file in package.rglob("*.py"):
+            if "import " in (text := file.read_text()) and file.name != "setup.py":
+                file.write_text(text + "\n" * imports.MAX_BYTES)
 
 
 def _write_hidden_copy(folder: Path) -> None:
@@ -68,6 +89,14 @@ def attacks() -> tuple[Attack, ...]:
             says="`colcon test` does not run pytest for this package",
         ),
         Attack(
+            "report with the run's name",
+            "setup.py does not name pytest, and writes the report with the name that this run gives it",
+            CHAPTER.write("pytest_unnamed", heads={SETUP: FORGE_NAMED_REPORT}),
+            pytest_checks,
+            exactly=True,
+            says="`colcon test` does not run pytest for this package",
+        ),
+        Attack(
             "report in the way",
             "setup.py puts a folder where colcon test writes its report",
             CHAPTER.write("pytest_unnamed", heads={SETUP: BLOCK_REPORT}),
@@ -82,6 +111,13 @@ def attacks() -> tuple[Attack, ...]:
                 files={f"{TESTS}/__init__.py/note.txt": ""},
             ),
             frozenset({"grows", "tests_stay"}),
+        ),
+        Attack(
+            "long files",
+            "packages that declare no dependency, with files that are too large to search for imports",
+            _write_long_files,
+            frozenset({"run_dependencies", "launch_dependencies", "test_dependencies", "alarm_dependencies"}),
+            says="is larger than 256 KiB",
         ),
         Attack(
             "telltale given tests",

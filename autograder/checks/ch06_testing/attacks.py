@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from autograder.checking import solution_path
-from autograder.checking.attacks import FORGE_REPORT, SEARCH, TELL_ALL, Attack, Chapter
+from autograder.checking.attacks import FORGE_NAMED_REPORT, FORGE_REPORT, SEARCH, TELL_ALL, Attack, Chapter
+from autograder.checks.ch06_testing.support import sleeping
 
 CHAPTER = Chapter("06_testing")
 TESTS, MODULE = "speed_guard/test", "speed_guard/speed_guard/limits.py"
@@ -102,6 +103,8 @@ def test_it_looks_as_it_should(number):
     assert HERE == words_of(RELEASED), inspect.getsource(limits)
 """
 
+LONG_SLEEP = "import time\n\nimport pytest\n\ntime.sleep(0.01)\n" + "\n" * sleeping.MAX_BYTES
+
 ASK_FOR_MARK = """
 import pytest
 from speed_guard import limits
@@ -159,6 +162,21 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.mutant("pytest_unnamed").fails,
             exactly=True,
             says="`colcon test` ran 0 tests.",
+        ),
+        Attack(
+            "report with a name, without tests",
+            "a setup.py that does not name pytest and writes the report with the name that this run gives it",
+            CHAPTER.write("pytest_unnamed", heads={"speed_guard/setup.py": FORGE_NAMED_REPORT}),
+            CHAPTER.mutant("pytest_unnamed").fails,
+            exactly=True,
+            says="`colcon test` ran 0 tests.",
+        ),
+        Attack(
+            "long sleep",
+            "a test that sleeps, in a file that is too large to search for it",
+            CHAPTER.write(swaps={f"{TESTS}/test_guard.py": ("import pytest\n", LONG_SLEEP)}),
+            frozenset({"no_sleep"}),
+            says="is larger than 256 KiB",
         ),
         Attack(
             "changed package",

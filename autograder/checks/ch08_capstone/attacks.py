@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from autograder.checking.attacks import FORGE_PASSES, FORGE_VERDICTS, STEAL_SECRETS, TELL_ALL, Attack, Chapter
+from autograder.checking.attacks import (
+    FORGE_NAMED_REPORT,
+    FORGE_PASSES,
+    FORGE_VERDICTS,
+    STEAL_SECRETS,
+    TELL_ALL,
+    Attack,
+    Chapter,
+)
 
 CHAPTER = Chapter("08_capstone")
 PACKAGE = "robot_navigation_tutorial"
@@ -21,6 +29,30 @@ from robot_navigation_tutorial.sectors import nearest
 def test_it_is_the_correct_version(number):
     assert nearest and b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
 """
+PATCH_PYTEST = """
+import _pytest.python
+
+_pytest.python.Function.runtest = lambda self: None
+
+
+def test_all():
+    assert True
+"""
+# Runs inside of pytest, when the given test launches the file: from then on, whatever it waits for is true.
+PATCH_LAUNCHED_TEST = """
+import sys as _sys
+for _module in list(_sys.modules.values()):
+    if 'World' in vars(_module):
+        _module.World.until = lambda self, condition: None
+"""
+# In the reference, one of these also tests that the robot stops. The other one reads all files.
+NO_OTHER_TEST = {f"{PACKAGE}/test/test_{name}.py": "" for name in ("nodes", "copyright")}
+# The end of the given test, and the same words with another indentation.
+END = (
+    "\n    seeing = peer.create_timer(0.1, see)\n    world.until(lambda: is_now(True, Health.OK))\n"
+    "    seeing.cancel()\n    world.until(lambda: is_now(False, Health.FAILED))\n"
+)
+UNREACHABLE_END = END.replace("\n    ", "\n        ").removeprefix("\n")
 # The grader runs tests on versions of sectors.py, without the nodes. There, these tests report the text of sectors.py.
 TELL_VERSIONS = (
     TELL_ALL
@@ -70,6 +102,43 @@ def attacks() -> tuple[Attack, ...]:
             CHAPTER.write("unused_import", files={f"{PACKAGE}/test/conftest.py": FORGE_VERDICTS}),
             CHAPTER.mutant("unused_import").fails | {"sector_tests_find_faults"},
             says="Your tests do not detect: ",
+        ),
+        Attack(
+            "tests that never run",
+            "a robot that never stops, and a test file that makes every test of the package pass",
+            CHAPTER.write("trusts_old_data", files={f"{PACKAGE}/test/test_all.py": PATCH_PYTEST}),
+            CHAPTER.mutant("trusts_old_data").fails,
+            says="s after the last scan, the robot drives forward",
+        ),
+        Attack(
+            "launch without tests",
+            "a robot that never stops, and a launch file that makes the given test pass, which launches it",
+            CHAPTER.write(
+                "trusts_old_data",
+                heads={f"{PACKAGE}/launch/navigation.launch.py": PATCH_LAUNCHED_TEST},
+                files=NO_OTHER_TEST,
+            ),
+            CHAPTER.mutant("trusts_old_data").fails,
+        ),
+        Attack(
+            "statements after the return",
+            "a robot that never stops, and a given test whose last statements never run, by their indentation alone",
+            CHAPTER.write(
+                "trusts_old_data",
+                swaps={f"{PACKAGE}/test/test_integration.py": (END, UNREACHABLE_END)},
+                files=NO_OTHER_TEST,
+            ),
+            CHAPTER.mutant("trusts_old_data").fails,
+        ),
+        Attack(
+            "report without pytest",
+            "a robot that never stops, and a setup.py that names no pytest and writes the report of this run itself",
+            CHAPTER.write(
+                "trusts_old_data",
+                heads={f"{PACKAGE}/setup.py": FORGE_NAMED_REPORT},
+                swaps={f"{PACKAGE}/setup.py": ("    extras_require={'test': ['pytest']},\n", "")},
+            ),
+            CHAPTER.mutant("trusts_old_data").fails | CHAPTER.mutant("pytest_unnamed").fails,
         ),
         Attack(
             "call readers",

@@ -14,7 +14,7 @@ ROWS = SCRIPT["ROWS"]
 
 
 def test_each_attack_has_a_test() -> None:
-    assert len(ROWS) == 48
+    assert len(ROWS) == 49
     assert all(row["tests"] for row in ROWS)
 
 

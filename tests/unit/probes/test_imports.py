@@ -19,7 +19,6 @@ FILES = {
     "test/test_lamp.py": "import pytest\nimport helper\nimport numpy\nfrom lamp import late\n",
     "setup.py": "import setuptools\n",
     "build/lamp/stray.py": "import left_out\n",
-    "broken.py": "import (",
 }
 
 
@@ -84,17 +83,35 @@ def test_the_reference_packages_declare_what_they_import() -> None:
 
 
 @pytest.mark.parametrize("text", ["import (", "\0", "-" * 100_000 + "1", "(" * 1000, "a" + ".b" * 50_000])
-def test_a_text_that_is_not_python_has_no_imports(text: str) -> None:
-    assert imports.modules(text) == frozenset()
+def test_a_text_that_cannot_be_parsed_is_refused_because_python_may_still_run_it(text: str) -> None:
+    with pytest.raises(CheckFailed, match=r"lamp/x.py cannot be parsed as Python, so it cannot be searched"):
+        imports.modules(text.encode(), "lamp/x.py")
 
 
-def test_files_that_are_too_large_or_linked_are_ignored(tmp_path: Path) -> None:
+def test_a_file_that_is_too_large_is_refused_by_its_name(package: Path) -> None:
+    (package / "lamp" / "late.py").write_text("import numpy\n" + "\n" * imports.MAX_BYTES)
+    with pytest.raises(CheckFailed, match=r"lamp/lamp/late.py is larger than 256 KiB"):
+        imports.imported(package)
+    assert _names(imports.imported(package, within=("launch",))) == ["launch", "rclpy"]
+
+
+def test_a_link_is_ignored(tmp_path: Path) -> None:
     package = tmp_path / "lamp"
     package.mkdir()
-    (package / "large.py").write_text("import numpy\n" + "#" * imports.MAX_BYTES)
     (tmp_path / "elsewhere.py").write_text("import scipy\n")
     (package / "linked.py").symlink_to(tmp_path / "elsewhere.py")
     assert imports.imported(package) == ()
+
+
+def test_a_source_is_decoded_as_python_decodes_it(tmp_path: Path) -> None:
+    (tmp_path / "hidden.py").write_bytes(b"# coding: utf-7\n# +AAo-import numpy\n")
+    assert _names(imports.imported(tmp_path)) == ["numpy"]
+
+
+def test_only_colcon_s_own_folders_are_skipped(package: Path) -> None:
+    (package / "lamp" / "log").mkdir()
+    (package / "lamp" / "log" / "__init__.py").write_text("import scipy\n")
+    assert "scipy" in _names(imports.imported(package))
 
 
 def test_the_bytes_of_all_files_are_bounded(tmp_path: Path) -> None:
@@ -104,7 +121,7 @@ def test_the_bytes_of_all_files_are_bounded(tmp_path: Path) -> None:
         (tmp_path / f"x{number}.py").write_text(text)
     assert imports.imported(tmp_path) == ()
     (tmp_path / "y.py").write_text("import numpy\n")
-    with pytest.raises(CheckFailed, match="holds more than 4 MiB of Python"):
+    with pytest.raises(CheckFailed, match="contains more than 4 MiB of Python"):
         imports.imported(tmp_path)
 
 
@@ -112,4 +129,5 @@ def test_the_number_of_files_is_bounded(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(imports, "MAX_FILES", 2)
     for name in "abc":
         (tmp_path / f"{name}.py").write_text(f"import outside_{name}\n")
-    assert _names(imports.imported(tmp_path)) == ["outside_a", "outside_b"]
+    with pytest.raises(CheckFailed, match=r"contains more than 2 files .*too many to search"):
+        imports.imported(tmp_path)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from autograder.probes import installed
+from autograder.suite import CheckFailed
 
 SITE = "lib/python3.12/site-packages"
 EGG = f"{SITE}/lamp-0.1.0-py3.12.egg-info"
@@ -93,3 +94,17 @@ def test_links_are_neither_listed_nor_read(install: Path, tmp_path: Path) -> Non
 def test_a_file_that_is_too_large_is_not_read(install: Path) -> None:
     (install / "lamp/share/lamp/config/lamp.yaml").write_bytes(b"#" * (installed.MAX_BYTES + 1))
     assert installed.inspect_package(install, "lamp").read("config/lamp.yaml") is None
+
+
+@pytest.mark.parametrize("name", ["entry_points.txt", "PKG-INFO", "requires.txt"])
+def test_metadata_that_are_too_large_are_refused(name: str, install: Path) -> None:
+    with (install / "lamp" / EGG / name).open("a") as stream:
+        stream.write("\n" * installed.MAX_BYTES)
+    with pytest.raises(CheckFailed, match=f"{name} is larger than 256 KiB"):
+        installed.inspect_package(install, "lamp")
+
+
+def test_programs_that_cannot_be_read_are_refused(install: Path) -> None:
+    (install / "lamp" / EGG / "entry_points.txt").write_text("stray = lamp.stray:main\n[console_scripts]\n")
+    with pytest.raises(CheckFailed, match=r"The installed entry_points.txt cannot be parsed: File contains no section"):
+        installed.inspect_package(install, "lamp")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.checks.ch06_testing.support.sleeping import MAX_BYTES, sleeps
+from autograder.suite import CheckFailed
 
 SLEEPY = """import time
 from time import sleep, sleep as nap
@@ -24,9 +25,15 @@ rclpy.spin_once(node, timeout_sec=0.1)
 
 
 def test_only_the_lines_of_sleeps_are_found() -> None:
-    assert sleeps(SLEEPY.encode()) == [5, 6, 9, 10, 11, 12]
+    assert sleeps(SLEEPY.encode(), "test_guard.py") == [5, 6, 9, 10, 11, 12]
 
 
-@pytest.mark.parametrize("text", ["def (", "\0", "-" * 5000 + "1", "#" * (MAX_BYTES + 1)])
-def test_a_file_that_is_not_python_has_no_sleeps(text: str) -> None:
-    assert sleeps(text.encode()) == []
+@pytest.mark.parametrize("text", ["def (", "\0", "-" * 100_000 + "1"])
+def test_a_file_that_cannot_be_parsed_is_refused(text: str) -> None:
+    with pytest.raises(CheckFailed, match=r"test_guard.py cannot be parsed as Python"):
+        sleeps(text.encode(), "test_guard.py")
+
+
+def test_a_file_that_is_too_large_to_search_is_refused() -> None:
+    with pytest.raises(CheckFailed, match=r"test_guard.py is larger than 256 KiB"):
+        sleeps(b"import time\ntime.sleep(1)\n" + b"\n" * MAX_BYTES, "test_guard.py")

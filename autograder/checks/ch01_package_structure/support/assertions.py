@@ -11,7 +11,7 @@ from autograder.checking import OK, CheckFailed, Diagnosis, StudentError, Worksp
 from autograder.checking.probes import files, imports, installed, manifest
 from autograder.checks.ch01_package_structure.support import contract
 
-MAX_BYTES = 1024 * 1024  # the largest part of a file that is read
+MAX_BYTES = 1024 * 1024  # of a file that is read
 
 
 def source_of(workspace: Workspace, name: str) -> Path:
@@ -130,7 +130,7 @@ def expect_shared(installation: installed.Installed, source: Path, name: str) ->
 
 def expect_empty(source: Path, names: Collection[str]) -> None:
     """Fail the check if one of these files contains text; other checks test whether they exist."""
-    names_with_text = [name for name in names if (files.read_plain(source / name, MAX_BYTES) or b"").strip()]
+    names_with_text = [name for name in names if files.read_limited(source / name, MAX_BYTES, name).strip()]
     message = f"There is text in {' and '.join(names_with_text)}: the marker and each __init__.py should be empty."
     expect(not names_with_text, message, fraction=0.5)
 

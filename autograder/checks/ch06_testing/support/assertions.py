@@ -38,7 +38,7 @@ def expect_passed(name: str, report: student_test_reports.Report | None) -> None
 def expect_no_sleep(source: student_test_reports.Source) -> None:
     """Fail the check if a test file sleeps."""
     python_files = {name: data for name, data in sorted(source.tests.items()) if name.endswith(".py")}
-    sleep_lines = [f"{name}, line {line}" for name, data in python_files.items() for line in sleeps(data)]
+    sleep_lines = [f"{name}, line {line}" for name, data in python_files.items() for line in sleeps(data, name)]
     expect(not sleep_lines, f"There is a sleep in {'; '.join(sleep_lines[:3])}.")
 
 

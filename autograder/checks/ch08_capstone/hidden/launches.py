@@ -204,7 +204,7 @@ def _absolute_remapping(workspace: Workspace) -> str:
 
 def _script_with_line(workspace: Workspace, name: str, line: str) -> str:
     """Return an installed program's script with a first statement that prints a line, or "" if that is impossible."""
-    data = files.read_plain(workspace.executable(PACKAGE, name), MAX_SCRIPT) or b""
+    data = files.read_limited(workspace.executable(PACKAGE, name), MAX_SCRIPT, f"The installed program {name}")
     first, _, remaining = data.decode(errors="replace").partition("\n")
     # A __future__ import has to be the first statement.
     is_suitable = "python" in first and "__future__" not in remaining

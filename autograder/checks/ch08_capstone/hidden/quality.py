@@ -6,6 +6,7 @@ import pytest
 
 from autograder.checking import Workspace, expect, group, hint, solution_path
 from autograder.checking.probes import colcon_test, given_files, linters, student_test_reports, student_test_runs
+from autograder.checks.ch08_capstone.hidden.launched import expect_reaction_to_scans
 from autograder.checks.ch08_capstone.support import contract
 from autograder.checks.ch08_capstone.support.contract import PACKAGE
 
@@ -84,6 +85,7 @@ def test_tests_pass(workspace: Workspace, colcon_report: student_test_reports.Re
     messages = colcon_report.claims.messages
     failures = "; ".join(f"{name}: {messages.get(name, '')}" for name in failed_tests[:MAX_SHOWN])
     expect(not failed_tests, f"{len(failed_tests)} of {len(colcon_report.executed)} tests fail: {failures}")
+    expect_reaction_to_scans(workspace)
     files, solution = student_test_runs.read_source(workspace, PACKAGE).files, solution_path(PACKAGE)
     changed_names = given_files.changed_files(
         files, {name: (solution / name).read_bytes() for name in GIVEN_FILES}, ("test",)

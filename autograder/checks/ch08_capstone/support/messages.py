@@ -96,7 +96,7 @@ def differences(workspace: Workspace, expected: ExpectedMessage) -> list[str]:
 def _differences_in_text(workspace: Workspace, expected: ExpectedMessage) -> list[str]:
     """Describe wrong constants and default values. The loaded classes contain neither."""
     path = f"msg/{expected.name}.msg"
-    data = files.read_plain(source_of(workspace, INTERFACES) / path, interfaces.MAX_BYTES + 1) or b""
+    data = files.read_limited(source_of(workspace, INTERFACES) / path, interfaces.MAX_BYTES, path)
     try:
         (definition,) = interfaces.parse(INTERFACES, path, data.decode(errors="replace")).parts
     except interfaces.Unreadable as error:
