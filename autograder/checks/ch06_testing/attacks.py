@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from autograder.checking import solution_path
 from autograder.checking.attacks import FORGE_NAMED_REPORT, FORGE_REPORT, SEARCH, TELL_ALL, Attack, Chapter
-from autograder.checks.ch06_testing.support import sleeping
 
 CHAPTER = Chapter("06_testing")
 TESTS, MODULE = "speed_guard/test", "speed_guard/speed_guard/limits.py"
@@ -103,7 +102,7 @@ def test_it_looks_as_it_should(number):
     assert HERE == words_of(RELEASED), inspect.getsource(limits)
 """
 
-LONG_SLEEP = "import time\n\nimport pytest\n\ntime.sleep(0.01)\n" + "\n" * sleeping.MAX_BYTES
+LONG_SLEEP = "import time\n\nimport pytest\n\ntime.sleep(0.01)\n" + "\n" * 256 * 1024  # more than the check reads
 
 ASK_FOR_MARK = """
 import pytest
