@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import glob
 import os
-import shutil
 import sys
 from collections.abc import Iterable
 from dataclasses import replace
@@ -44,8 +43,8 @@ def colcon_command(workspace: Workspace, folders: Iterable[Path], verb: str, *op
 def colcon_build(workspace: Workspace, folders: Iterable[Path], *selection: str) -> None:
     """Run `colcon build` on a workspace, without a network.
 
-    The build can write only to the workspace, and in it only to a copy of `src`: checks read what was handed in.
-    `folders` are the folders of its packages, and `selection` contains colcon's options that select some of them.
+    The build can write only to the workspace. `folders` are the folders of its packages, and `selection` contains
+    colcon's options that select some of the packages.
 
     Raises:
         StudentError: the build failed, or `require_contained` rejects its files. The detail is the end of the output.
@@ -53,10 +52,7 @@ def colcon_build(workspace: Workspace, folders: Iterable[Path], *selection: str)
     """
     with workspace.private_folder() as folder:
         overlay = cmake_overlay.write_overlay(workspace.ros.prefixes, folder / "cmake-overlay")
-        source = shutil.copytree(workspace.root / "src", folder / "src", symlinks=True)
-        mounts = (Mount(workspace.root / "src", writable=True, source=source), Mount(overlay))
-        command = colcon_command(workspace, folders, "build", *selection)
-        output, exit_reason, status = _run(workspace, overlay, mounts, command)
+        output, exit_reason, status = _run(workspace, overlay, colcon_command(workspace, folders, "build", *selection))
         output = output.replace(str(folder), "~")
     if exit_reason is not ExitReason.EXITED or status != 0:
         # Two gradings of the same submission use different folders for the workspace, which students know as ws.
@@ -68,9 +64,7 @@ def colcon_build(workspace: Workspace, folders: Iterable[Path], *selection: str)
     require_contained(workspace.install)
 
 
-def _run(
-    workspace: Workspace, overlay: Path, mounts: tuple[Mount, ...], command: list[str]
-) -> tuple[str, ExitReason | None, int | None]:
+def _run(workspace: Workspace, overlay: Path, command: list[str]) -> tuple[str, ExitReason | None, int | None]:
     spec = workspace.sandbox(BUILD)
     environment = {
         **spec.environment,
@@ -78,7 +72,7 @@ def _run(
         "COLCON_HOME": str(workspace.scratch),
         "MAKEFLAGS": f"-j{min(3, (os.cpu_count() or 1) + 1)}",
     }
-    mounts = (*spec.mounts, Mount(RUNNER), Mount(workspace.root, writable=True), *mounts)
+    mounts = (*spec.mounts, Mount(RUNNER), Mount(workspace.root, writable=True), Mount(overlay))
     spec = replace(spec, workdir=workspace.root, mounts=mounts, environment=environment, network=False)
     with launch(command, spec, profile="colcon") as process:
         process.wait(BUILD.wall_seconds + 10)
@@ -110,7 +104,7 @@ def read_installed(install: Path) -> dict[Entry, bytes]:
 
 
 def _not_contained(contents: str) -> StudentError:
-    sentence = f"The build left {contents}: setup.py and CMakeLists.txt must install only plain files of the package."
+    sentence = f"The build left {contents}: setup.py and CMakeLists.txt must install plain files of the package alone."
     return StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
 
 
@@ -120,8 +114,8 @@ def _build_failure(output: str, exit_reason: ExitReason | None) -> str:
         return f"colcon build was stopped ({reason}): a build should end within a minute or two."
     if "specified with --packages-up-to was not found" in output:
         return (
-            "colcon does not find the package, because its package.xml breaks a rule of ROS: run colcon build and read "
-            "the text after “Failed to parse ROS package manifest”."
+            "colcon does not see the package, because its package.xml breaks a rule of ROS: run colcon build and read "
+            "what follows “Failed to parse ROS package manifest”."
         )
     # Before this line, colcon only reads src, and reports errors in packages that this build does not need.
     output = output[max(output.find("Starting >>> "), 0) :]

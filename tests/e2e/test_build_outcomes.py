@@ -13,8 +13,6 @@ from autograder.building.build import build_workspace
 from autograder.diagnosis import OK, Kind
 from autograder.exceptions import StudentError
 from autograder.ros import activate
-from autograder.run.sandbox import Isolation
-from autograder.run.sandbox.launcher import ISOLATION_VARIABLE
 from autograder.run.sandbox.limits import BUILD
 from autograder.run.workspace import Workspace
 from autograder.submission.exercise_stubs import CODE_STUB
@@ -111,7 +109,7 @@ def test_a_build_that_a_limit_ended_is_not_repeated(workspace: Workspace, monkey
 
 
 def test_a_missing_file_ends_the_grading_unless_the_build_may_fail(workspace: Workspace) -> None:
-    with pytest.raises(StudentError, match="is incomplete"):
+    with pytest.raises(StudentError, match="only half written"):
         build_workspace(workspace, ("good",))
 
 
@@ -121,7 +119,7 @@ def test_a_folder_in_which_colcon_sees_no_package_is_not_built(workspace: Worksp
     (folder / "setup.py").write_text("raise SystemExit('not yet')\n")
     outcome = build_workspace(workspace, ("good",), may_fail=True)
     assert (outcome.build.ok, outcome.diagnosis.kind) == (False, Kind.BUILD_FAILED)
-    assert "colcon does not find the package" in outcome.diagnosis.sentence
+    assert "colcon does not see the package" in outcome.diagnosis.sentence
 
 
 def test_the_quoted_error_belongs_to_the_package_that_failed(workspace: Workspace) -> None:
@@ -162,18 +160,6 @@ def test_a_build_uses_no_folder_that_an_earlier_build_could_write_to(workspace: 
     assert (outcome.diagnoses["bad"].kind, outcome.diagnoses["good"]) == (Kind.BUILD_FAILED, OK)
     assert (workspace.scratch / "bundle").is_symlink()
     assert not list(workspace.scratch.rglob("*.cmake"))
-
-
-def test_a_build_does_not_change_the_sources_that_checks_read(
-    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(ISOLATION_VARIABLE, Isolation.BUBBLEWRAP.value)
-    source = workspace.root / "src" / "good"
-    with (source / "setup.py").open("a") as file:
-        file.write("open('good/__init__.py', 'w').write('X = 1')\nopen('../new.py', 'w').close()\n")
-    assert build_workspace(workspace, ("good",), may_fail=True).diagnoses["good"] is OK
-    assert (source / "good/__init__.py").read_text() == ""
-    assert not (workspace.root / "src/new.py").exists()
 
 
 def test_nothing_is_installed_through_a_link_that_a_failed_build_left(
