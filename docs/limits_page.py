@@ -21,7 +21,7 @@ from autograder.run.sandbox.limits import MIB, TreeLimits
 from autograder.submission.intake.bounds import MAX_MEMORY, MAX_SECONDS
 from autograder.submission.intake.files import MAX_FILES, MAX_READ_BYTES, MAX_SCANNED, MAX_TOTAL_BYTES
 from autograder.submission.intake.notebooks import MAX_CELLS, MAX_VALUES
-from autograder.submission.intake.tar import MAX_HEADER
+from autograder.submission.intake.tar import MAX_EXTENDED, MAX_HEADER
 from autograder.submission.intake.zip_directory import MAX_EXTRA
 
 HEAD = """# Limits by kind
@@ -105,8 +105,8 @@ def rows() -> list[tuple[str, str, str, str]]:
         ),
         (
             "an archive",
-            f"{_mib(MAX_READ_BYTES)} on disk; {MAX_SCANNED:,} headers and parts in all; "
-            f"{MAX_HEADER // 1024} KiB in a tar's header; {MAX_EXTRA} bytes of extra fields in a zip",
+            f"{_mib(MAX_READ_BYTES)} on disk, unless it is a zip; {MAX_SCANNED:,} files, folders and parts; "
+            f"{MAX_EXTENDED} headers of {_mib(MAX_HEADER)} for a file in a tar; {MAX_EXTRA} bytes of extra fields in a zip",
             "intake",
             "test_archive_costs",
         ),

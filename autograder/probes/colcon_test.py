@@ -84,7 +84,7 @@ def _extras_name_pytest(installed: Installed) -> bool:
 def _source_names_pytest(workspace: Workspace, package: str) -> bool:
     """Return whether setup.py or setup.cfg contains both `tests_require` and pytest.
 
-    A file that forges a report would have to contain both, too, which is no less work than to name pytest.
+    A file that forges a report would have to contain both, too, which is no less work than naming pytest.
     """
     folder = find_packages(workspace.root / "src")[0].get(package)
     if folder is None:

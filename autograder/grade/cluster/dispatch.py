@@ -175,7 +175,7 @@ class _Dispatch:
         """Yield the submissions to send. Store a result for each one that intake rejects.
 
         They are read in this process, because a sandbox for each would take longer than 64 workers need to grade it.
-        Intake limits its time and memory.
+        Intake limits sizes, counts and time, but not the memory of a process in which Dask's client has a thread.
         """
         for job in jobs:
             try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +44,14 @@ def restored(submitted: NotebookNode, released: NotebookNode) -> NotebookNode:
     A very long cell of the student is cut and shown as plain text.
     """
     notebook = submitted_notebook.restore(submitted, released)
-    given_sources = {clean(cell.source) for cell in released.cells}
+    given_counts = Counter(clean(cell.source) for cell in released.cells)
     ids: set[str] = set()
     total = 0
     for cell in notebook.cells:
         cell.source = clean(cell.source)
-        if cell.source not in given_sources:
+        if given_counts[cell.source]:  # a further copy of a given cell is the student's
+            given_counts[cell.source] -= 1
+        else:
             limit = MAX_CELL if total + min(len(cell.source), MAX_CELL) <= MAX_CELLS else MAX_FURTHER
             total += min(len(cell.source), limit)
             if len(cell.source) > limit:

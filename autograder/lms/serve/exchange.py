@@ -34,7 +34,7 @@ LOG = logging.getLogger(__name__)
 LAST_FILE = "submission_secret.txt"  # nbgrader writes it after all others
 POLL_SECONDS = 5.0  # real time between two polls of the exchange
 MAX_PACK_SECONDS = 60.0  # real time in which `tar` has to pack a submission
-_GZIP = 31  # the format of a compressed stream, as `zlib.compressobj` numbers it
+_GZIP = 16 + zlib.MAX_WBITS  # see `zlib.compressobj`
 
 
 @dataclass(frozen=True)

@@ -64,14 +64,13 @@ def read_archive(file: IO[bytes], name: str, prefix: PurePosixPath, contents: Co
         StudentError: a path leads out of the archive, or the archive has too many files.
         ValueError or another of `READ_ERRORS`: it is not an archive, or it is damaged or encrypted.
     """
-    if file.seek(0, io.SEEK_END) > MAX_READ_BYTES:
-        raise unsafe(f"{name} is larger than {MAX_READ_BYTES // 2**20} MiB")
-    file.seek(0)
     head = file.read(512)
-    file.seek(0)
     if head.startswith(b"PK"):
         _read_zip(file, prefix, contents)
         return
+    if file.seek(0, io.SEEK_END) > MAX_READ_BYTES:  # a zip is not read as a whole
+        raise unsafe(f"{name} is larger than {MAX_READ_BYTES // 2**20} MiB")
+    file.seek(0)
 
     def open_stream() -> IO[bytes]:
         return decompressed(file, contents)
@@ -92,6 +91,8 @@ def safe_path(name: str) -> PurePosixPath:
     if len(name) > MAX_NAME or name.count("/") > MAX_FOLDERS:
         raise unsafe(f"the name {name[:60]!r}... has more than {MAX_NAME} characters or {MAX_FOLDERS} folders")
     path = PurePosixPath(name)
+    if "\0" in name:
+        raise unsafe(f"the name {name!r} is invalid")
     if path.is_absolute() or ".." in path.parts or (path.parts and path.parts[0].endswith(":")):
         raise unsafe(f"{name} points outside the archive")
     return path
@@ -100,7 +101,7 @@ def safe_path(name: str) -> PurePosixPath:
 def _read_zip(file: IO[bytes], prefix: PurePosixPath, contents: Contents) -> None:
     checked_file = CheckedZip(file, contents)
     with zipfile.ZipFile(checked_file.file) as archive:
-        checked_file.is_open = True
+        checked_file.list_is_read = True
         infos = [(safe_path(info.filename), info) for info in archive.infolist()]
         ignored_paths = IgnoredPaths([path for path, _ in infos])
 
@@ -110,7 +111,9 @@ def _read_zip(file: IO[bytes], prefix: PurePosixPath, contents: Contents) -> Non
             read = partial(_inflate, archive, info, contents)
             return Member(path, info.file_size, bool(mode & _EXECUTABLE), read, problem)
 
-        members = (member(path, info) for path, info in infos if not info.is_dir() and path not in ignored_paths)
+        # Before Python 3.12, `is_dir` fails on an empty name.
+        files = ((path, info) for path, info in infos if not info.filename.endswith("/"))
+        members = (member(path, info) for path, info in files if path not in ignored_paths)
         _add(sorted(members, key=lambda member: reading_rank(member.path)), prefix, contents)
 
 

@@ -21,7 +21,7 @@ MAX_MEMORY = 2 * 1024 * 1024 * 1024  # bytes of virtual memory; a submission tha
 
 
 class _OutOfTimeError(Exception):
-    """The processor time is over. No reader handles this error, unlike a StudentError about an inner archive."""
+    """The processor time is used up. No reader handles this error, unlike a StudentError about an inner archive."""
 
 
 @contextmanager

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import os
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from autograder.diagnosis import Diagnosis, Kind
 from autograder.exceptions import StudentError
+from autograder.submission.intake.bounds import MAX_SECONDS
 from autograder.submission.intake.names import is_archive, is_notebook
 from autograder.submission.intake.notebooks import without_outputs
 
@@ -21,7 +23,7 @@ MAX_READ_BYTES = 256 * 1024 * 1024  # read or decompressed, from one archive and
 # Limit for the decompressed bytes of all archives, and one for their compressed bytes. A tar is read up to three times:
 # names, possible answers, the rest.
 MAX_UNPACKED_BYTES = 4 * MAX_READ_BYTES
-MAX_SCANNED = 100_000  # files, folders, headers of archives and parts of compressed files
+MAX_SCANNED = 100_000  # files, folders and parts of compressed files
 MAX_DEPTH = 16  # parts of a path
 MAX_PATH_BYTES = 200  # file systems allow 255 for each part
 
@@ -56,12 +58,14 @@ class Contents:
     bytes_unpacked: int = 0  # decompressed, including those of skipped files
     scanned: int = 0
     archives: int = 0
+    started_at: float = field(default_factory=time.thread_time)  # processor time of this thread, in s
 
     def scan(self) -> None:
         """Count a file, a folder or a part of an archive. Raises StudentError if there are too many."""
         self.scanned += 1
         if self.scanned > MAX_SCANNED:
             raise unsafe(f"it holds more than {MAX_SCANNED:,} files and folders")
+        self._limit_time()
 
     def count_packed(self, count: int) -> None:
         """Count bytes that are decompressed, even to nothing. Raises StudentError if there are too many."""
@@ -76,6 +80,12 @@ class Contents:
     def _limit_unpacking(self) -> None:
         if max(self.bytes_packed, self.bytes_unpacked) > MAX_UNPACKED_BYTES:
             raise unsafe("its archives contain too much data in all")
+        self._limit_time()
+
+    def _limit_time(self) -> None:
+        """Raise a StudentError if reading has taken too long. `bounds` limits only processes with one thread."""
+        if time.thread_time() - self.started_at > MAX_SECONDS:
+            raise unsafe(f"reading it takes more than {MAX_SECONDS:.0f} s")
 
     def remove(self, file: SubmittedFile) -> None:
         """Remove an archive whose files replace it."""

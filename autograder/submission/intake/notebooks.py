@@ -84,7 +84,7 @@ def _parse(data: bytes) -> Cell:
 
 def _cells_of_worksheets(notebook: Cell) -> list[Any] | None:
     """Return the cells of a notebook of format 3, from 2014 or earlier, or None if it has no list of them."""
-    worksheets = notebook.get("worksheets", [])
+    worksheets = notebook.get("worksheets")
     if not isinstance(worksheets, list):
         return None
     cells: list[Any] = []

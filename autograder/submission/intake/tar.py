@@ -15,13 +15,16 @@ from typing import IO
 
 from autograder.submission.intake.files import Contents, unsafe
 
-MAX_HEADER = 16 * 1024  # bytes of an extended header; the longest path that is accepted takes up one KiB
+MAX_HEADER = 1024 * 1024  # bytes of an extended header, which can contain the attributes of a file
 MAX_KEYWORDS = 100  # in an extended header; tools write one or two for each attribute of a file
+MAX_EXTENDED = 8  # extended headers of one member; tools write up to three
 _STEP = 1024 * 1024  # bytes that are skipped at a time
 _PAX = (tarfile.XHDTYPE, tarfile.SOLARIS_XHDTYPE)
 # Headers of no member: keywords for the next member or for all, and a long name or link target for the next member.
 _EXTENDED = (*_PAX, tarfile.XGLTYPE, tarfile.GNUTYPE_LONGNAME, tarfile.GNUTYPE_LONGLINK)
-_SPARSE = "GNU.sparse."
+_SPARSE_NAME = "GNU.sparse.name"
+_SPARSE = ("GNU.sparse.size", "GNU.sparse.major")  # each version of the format has one of them
+_USED = frozenset(name.encode() for name in ("path", "size", _SPARSE_NAME, *_SPARSE))  # the keywords that are kept
 # Whether another block with the map of a sparse file follows: the flag's place in a header and in a block of the map.
 _IS_CONTINUED, _MAP_IS_CONTINUED = 482, 504
 
@@ -47,16 +50,20 @@ class TarStream:
     def members(self, contents: Contents) -> Iterator[TarMember]:
         """Yield all members. Raises StudentError if there are too many headers, or one is too large."""
         keywords: dict[str, str] = {}
+        extended_count = 0  # since the last member
         while (block := self._stream.read(tarfile.BLOCKSIZE)) and (info := _parse(block, self._position)) is not None:
             self._position += len(block)
-            contents.scan()
             if info.type in _EXTENDED:
+                extended_count += 1
+                if extended_count > MAX_EXTENDED:
+                    raise unsafe(f"a file in it has more than {MAX_EXTENDED} extended headers")
                 keywords.update(self._read_extended(info))
                 continue
+            contents.scan()
             if info.type == tarfile.GNUTYPE_SPARSE:
                 self._skip_map(block)
             member = _member(info, self._position, keywords)
-            keywords = {}
+            keywords, extended_count = {}, 0
             yield member
             if info.isreg() or info.type not in tarfile.SUPPORTED_TYPES:
                 self._skip(_padded(member.size))
@@ -80,7 +87,7 @@ class TarStream:
     def _read_extended(self, info: tarfile.TarInfo) -> dict[str, str]:
         """Read the content of an extended header, and return the keywords for the next member."""
         if not 0 <= info.size <= MAX_HEADER:
-            raise unsafe(f"a header in it is larger than {MAX_HEADER // 1024} KiB")
+            raise unsafe(f"a header in it is larger than {MAX_HEADER // 2**20} MiB")
         data = self._read(_padded(info.size))[: info.size]
         if info.type in _PAX:
             return _parse_keywords(data)
@@ -104,8 +111,8 @@ def _parse(block: bytes, position: int) -> tarfile.TarInfo | None:
 
 
 def _member(info: tarfile.TarInfo, start: int, keywords: dict[str, str]) -> TarMember:
-    is_sparse = info.type == tarfile.GNUTYPE_SPARSE or any(keyword.startswith(_SPARSE) for keyword in keywords)
-    name = keywords.get(f"{_SPARSE}name", keywords.get("path", info.name))
+    is_sparse = info.type == tarfile.GNUTYPE_SPARSE or any(keyword in keywords for keyword in _SPARSE)
+    name = keywords.get(_SPARSE_NAME, keywords.get("path", info.name))
     size = int(keywords.get("size", info.size))
     if size < 0:
         raise ValueError(f"the size of {name} is negative")
@@ -124,7 +131,8 @@ def _parse_keywords(data: bytes) -> dict[str, str]:
         keyword, separator, value = data[start + len(digits) + 1 : end - 1].partition(b"=")
         if not (start + len(digits) + 1 < end <= len(data) and separator):
             raise ValueError("one of its headers is damaged")
-        keywords[_text(keyword)] = _text(value)
+        if keyword in _USED:
+            keywords[_text(keyword)] = _text(value)
         start, count = end, count + 1
         if count > MAX_KEYWORDS:
             raise unsafe(f"a header in it has more than {MAX_KEYWORDS} keywords")

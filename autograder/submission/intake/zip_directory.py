@@ -22,7 +22,7 @@ class CheckedZip:
     def __init__(self, file: IO[bytes], contents: Contents) -> None:
         self._file, self._contents = file, contents
         self.seek, self.tell, self.seekable = file.seek, file.tell, file.seekable
-        self.is_open = False  # whether `zipfile` has read the list
+        self.list_is_read = False  # whether `zipfile` has read the list
 
     @property
     def file(self) -> IO[bytes]:
@@ -31,7 +31,7 @@ class CheckedZip:
 
     def read(self, size: int = -1) -> bytes:
         """Read from the file. Raises StudentError if the bytes are a list that is too long."""
-        if self.is_open:
+        if self.list_is_read:
             return self._file.read(size)
         if size > MAX_DIRECTORY:
             raise unsafe("it holds too many files")

@@ -230,6 +230,13 @@ def test_usual_cells_and_those_of_the_instructor_are_not_cut() -> None:
     assert [cell.source for cell in notebook.cells] == [cell.source for cell in (*given, *own)]
 
 
+def test_a_further_copy_of_a_given_cell_counts_as_the_student_s() -> None:
+    given = new_markdown_cell("*given* " * MAX_CELL)
+    notebook = restored(new_notebook(cells=[given, new_markdown_cell(given.source)]), new_notebook(cells=[given]))
+    assert notebook.cells[0].source == given.source
+    assert "This cell has" in notebook.cells[1].source
+
+
 def test_all_cells_of_a_student_together_are_limited() -> None:
     cells = [new_markdown_cell(f"{number} " + "\\begin{a}" * (MAX_CELL // 10)) for number in range(100)]
     notebook = restored(new_notebook(cells=cells), new_notebook())

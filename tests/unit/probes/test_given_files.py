@@ -64,6 +64,8 @@ def test_a_file_with_the_same_meaning_is_unchanged(name: str, given: bytes, actu
         ("a.yaml", YAML, YAML.replace(b"1.0", b"1")),
         ("a.yaml", YAML, YAML.replace(b"true", b"1")),
         ("a.yaml", YAML, YAML + b"  - ["),
+        ("a.yaml", YAML, b"lamp: {ros__parameters: {<<: {lit: true, side: 1.0}}}"),
+        ("a.py", b"x = 1", b"x = 0x" + b"f" * 20_000),
         ("a.txt", LINES, b"one two\nthree\n"),
         ("a.txt", LINES, b"one two three\n"),
     ],

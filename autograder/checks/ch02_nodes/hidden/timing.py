@@ -94,7 +94,7 @@ def test_warns(fresh_robot: Robot, reactions: Reactions) -> None:
 @check(points=1, covers=("logs-status", "status"), needs=("subscribes_status",))
 @hint("self.get_logger().info(msg.data), in status_callback.")
 def test_logs_status(robot: Robot, draw: random.Random) -> None:
-    """It logs the text of each status at level info."""
+    """The text of each status appears in its log, at level info."""
     status_text = f"battery {draw.randrange(10**6)}"
     for count, suffix in enumerate(("", " again")):
         robot.publish("/status", String(data=status_text))

@@ -76,7 +76,7 @@ def test_linters_pass(workspace: Workspace, colcon_report: student_test_reports.
 @hint("Run colcon test in a terminal, then colcon test-result --all --verbose.")
 @hint("test_integration.py starts your launch file: the robot has to drive while scans arrive, and stop when they end.")
 def test_tests_pass(workspace: Workspace, colcon_report: student_test_reports.Report) -> None:
-    """Every test of the package passes, and the given integration test is unchanged."""
+    """Every test of the package passes, the launched robot reacts to scans, and the given test is unchanged."""
     expect(
         any(name not in LINTERS for name in colcon_report.executed),
         "colcon test ran no tests except those of the linters.",
