@@ -106,7 +106,8 @@ def rows() -> list[tuple[str, str, str, str]]:
         (
             "an archive",
             f"{_mib(MAX_READ_BYTES)} on disk, unless it is a zip; {MAX_SCANNED:,} files, folders and parts; "
-            f"{MAX_EXTENDED} headers of {_mib(MAX_HEADER)} for a file in a tar; {MAX_EXTRA} bytes of extra fields in a zip",
+            f"{MAX_EXTENDED} headers of {_mib(MAX_HEADER)} for a file in a tar; "
+            f"{MAX_EXTRA} bytes of extra fields in a zip",
             "intake",
             "test_archive_costs",
         ),
