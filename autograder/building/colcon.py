@@ -104,7 +104,7 @@ def read_installed(install: Path) -> dict[Entry, bytes]:
 
 
 def _not_contained(contents: str) -> StudentError:
-    sentence = f"The build left {contents}: setup.py and CMakeLists.txt must install plain files of the package alone."
+    sentence = f"The build left {contents}: setup.py and CMakeLists.txt must install only plain files of the package."
     return StudentError(Diagnosis(Kind.BUILD_FAILED, sentence))
 
 
@@ -114,8 +114,8 @@ def _build_failure(output: str, exit_reason: ExitReason | None) -> str:
         return f"colcon build was stopped ({reason}): a build should end within a minute or two."
     if "specified with --packages-up-to was not found" in output:
         return (
-            "colcon does not see the package, because its package.xml breaks a rule of ROS: run colcon build and read "
-            "what follows “Failed to parse ROS package manifest”."
+            "colcon does not find the package, because its package.xml breaks a rule of ROS: run colcon build and read "
+            "the text after “Failed to parse ROS package manifest”."
         )
     # Before this line, colcon only reads src, and reports errors in packages that this build does not need.
     output = output[max(output.find("Starting >>> "), 0) :]

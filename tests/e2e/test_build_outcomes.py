@@ -109,7 +109,7 @@ def test_a_build_that_a_limit_ended_is_not_repeated(workspace: Workspace, monkey
 
 
 def test_a_missing_file_ends_the_grading_unless_the_build_may_fail(workspace: Workspace) -> None:
-    with pytest.raises(StudentError, match="only half written"):
+    with pytest.raises(StudentError, match="is incomplete"):
         build_workspace(workspace, ("good",))
 
 
@@ -119,7 +119,7 @@ def test_a_folder_in_which_colcon_sees_no_package_is_not_built(workspace: Worksp
     (folder / "setup.py").write_text("raise SystemExit('not yet')\n")
     outcome = build_workspace(workspace, ("good",), may_fail=True)
     assert (outcome.build.ok, outcome.diagnosis.kind) == (False, Kind.BUILD_FAILED)
-    assert "colcon does not see the package" in outcome.diagnosis.sentence
+    assert "colcon does not find the package" in outcome.diagnosis.sentence
 
 
 def test_the_quoted_error_belongs_to_the_package_that_failed(workspace: Workspace) -> None:

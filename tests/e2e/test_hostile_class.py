@@ -29,7 +29,7 @@ FEW_CHECKS = ("threshold", "ten_hertz")  # the checks that grade the small class
 # The first sentence of the feedback. If an attack has no effect, it describes the flaw of the attacker's program.
 SENTENCES = {
     **dict.fromkeys(
-        ("thief", "tricks", "forged protocol", "build thief", "notebook tricks"), "It published a command every 0.20 s"
+        ("thief", "tricks", "forged protocol", "build thief", "notebook tricks"), "published a command every 0.20 s"
     ),
     **dict.fromkeys(("spoofed ROS", "constants"), "the robot drove forward at 0.30 m/s: it should turn left"),
     "nan commands": "was told to move at nan m/s and nan rad/s",

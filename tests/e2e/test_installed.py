@@ -57,7 +57,7 @@ def test_forbidden_installed_files_fail_the_build_with_a_sentence_and_are_not_co
         build(Workspace(tmp_path / "ws", activate(), tmp_path / "home"), ("filler",))
     assert excinfo.value.diagnosis.kind is Kind.BUILD_FAILED
     assert sentence in excinfo.value.diagnosis.sentence
-    assert "setup.py and CMakeLists.txt must install plain files" in excinfo.value.diagnosis.sentence
+    assert "setup.py and CMakeLists.txt must install only plain files" in excinfo.value.diagnosis.sentence
     assert not any((tmp_path / "cache").rglob("install"))
     copied = sum(path.lstat().st_blocks * 512 for path in tmp_path.rglob("*"))
     assert copied < 8 * MIB

@@ -401,7 +401,7 @@ def test_a_deadlock_is_reported_at_once_with_its_reason(name: str) -> None:
 def test_programs_that_answer_each_other_without_end_are_stopped() -> None:
     kind, sentence = in_worker_sandbox(diagnose, pong("int(m.data)", "10"))
     assert kind == "stuck"
-    assert "would go on for ever" in sentence
+    assert "would continue for ever" in sentence
 
 
 def run_flood(scratch: Path, text: str) -> list[Any]:
