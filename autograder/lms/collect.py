@@ -104,7 +104,7 @@ def _by_student(
     for item in items:
         student = roster.find(item.keys)
         if student is None:
-            unmatched.append((item.listed_name, item.doubt or f"it matches no student in {roster.path.name}"))
+            unmatched.append((item.listed_name, item.ambiguity or f"it matches no student in {roster.path.name}"))
         elif reason := folder_name_problem(student.id):
             unmatched.append((item.listed_name, f"{reason} in {roster.path.name}"))
         elif not item.is_submission:
@@ -130,7 +130,7 @@ def _items(folder: Path, roster: Roster, assignment: str) -> tuple[list[Download
 
 def _is_submission(item: DownloadedItem, folder: Path, roster: Roster) -> bool:
     """Return whether the only item of a download is a submission, rather than a folder with all submissions."""
-    return bool(item.doubt) or roster.find(item.keys) is not None or folder.resolve().name.endswith(FOLDER_SUFFIX)
+    return bool(item.ambiguity) or roster.find(item.keys) is not None or folder.resolve().name.endswith(FOLDER_SUFFIX)
 
 
 def _with_accounts(items: list[DownloadedItem], folder: Path, roster: Roster, assignment: str) -> list[DownloadedItem]:
@@ -149,11 +149,11 @@ def _with_account(item: DownloadedItem, prefix: str | None, accounts: Set[str]) 
     candidates = [account for start in prefixes(name) if (account := account_in(name, start)) in accounts]
     if not candidates:
         return item
-    doubt = (
+    ambiguity = (
         f"unclear: {' or '.join(candidates)}, or another account with this ending; name the folder of the clones "
         f"ASSIGNMENT{FOLDER_SUFFIX}, as `gh classroom clone` does"
     )
-    return replace(item, doubt=doubt)
+    return replace(item, ambiguity=ambiguity)
 
 
 def _newest_attempt(items: Sequence[DownloadedItem]) -> list[DownloadedItem]:

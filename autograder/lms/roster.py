@@ -1,4 +1,4 @@
-"""Reads a table of students that a system exported: Moodle's grading worksheet, Canvas's gradebook, or a CSV roster.
+"""Reads a list of students from another system: Moodle's grading worksheet, Canvas's gradebook, or a CSV roster.
 
 It recognizes the columns of Moodle's offline grading worksheet, Canvas's gradebook export, GitHub Classroom's
 `classroom_roster.csv`, Gradescope's roster, nbgrader's `db student import`, Blackboard's grade centre, Brightspace's

@@ -68,7 +68,7 @@ class DownloadedItem:
     Attributes:
         path: its path.
         name: the name that the student gave it; empty if it is the name of the path.
-        doubt: the reason why it is unclear whose it is, or an empty string.
+        ambiguity: the reason why it is unclear whose it is, or an empty string.
         keys: identities of the student, for `Roster.find`.
         order: a key that sorts the items of a student; newer items have larger keys.
         late: whether the system marks it as late.
@@ -84,7 +84,7 @@ class DownloadedItem:
     late: bool = False
     is_submission: bool = True
     name: str = ""
-    doubt: str = ""
+    ambiguity: str = ""
     is_receipt: bool = False
     system: str = ""
     time: str = ""
@@ -103,7 +103,7 @@ class DownloadedItem:
 def read_names(folder: Path) -> list[DownloadedItem]:
     """Parse the names in a folder, with an item for each member of a group and none for files that a system added."""
     children = [child for child in sorted(folder.iterdir()) if not is_ignored(child.name)]
-    items = _without_doubtful_groups([item for child in children for item in _read_name(child)])
+    items = _without_ambiguous_groups([item for child in children for item in _read_name(child)])
     added_names = frozenset[str]().union(*(ADDED_FILES.get(item.system, ()) for item in items))
     return [item for item in items if item.path.name not in added_names]
 
@@ -166,7 +166,7 @@ def _read_blackboard(path: Path, match: re.Match[str]) -> DownloadedItem:
         (match["time"],),
         is_submission=bool(file),
         name=file,
-        doubt="" if has_receipt else "unclear: its Blackboard receipt is missing, or names another student",
+        ambiguity="" if has_receipt else "unclear: its Blackboard receipt is missing, or names another student",
         is_receipt=not file,
         system="blackboard",
         time="{}-{}-{} {}:{}:{}".format(*match["time"].split("-")),
@@ -212,7 +212,7 @@ def _members(path: Path) -> list[IdentityKeys]:
     return members if member_names != path.name or path.is_dir() else []
 
 
-def _without_doubtful_groups(items: list[DownloadedItem]) -> list[DownloadedItem]:
+def _without_ambiguous_groups(items: list[DownloadedItem]) -> list[DownloadedItem]:
     """Remove the keys from items of a Sakai group if one of its members has an individual submission.
 
     A Sakai group looks like a student whose name contains another student's name.
@@ -220,9 +220,9 @@ def _without_doubtful_groups(items: list[DownloadedItem]) -> list[DownloadedItem
     paths = [item.path for item in items]
     groups = [item for item in items if item.system == "sakai" and paths.count(item.path) > 1]
     individuals = {item.keys[:1] for item in items if item not in groups}
-    doubtful = {item.path for item in groups if item.keys[:1] in individuals}
-    doubt = "unclear: a member of this group also has an individual submission"
-    return [replace(item, keys=(), doubt=doubt) if item.path in doubtful else item for item in items]
+    ambiguous = {item.path for item in groups if item.keys[:1] in individuals}
+    ambiguity = "unclear: a member of this group also has an individual submission"
+    return [replace(item, keys=(), ambiguity=ambiguity) if item.path in ambiguous else item for item in items]
 
 
 def _read_sakai(path: Path) -> list[DownloadedItem]:

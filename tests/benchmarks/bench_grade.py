@@ -1,4 +1,4 @@
-"""Measure the core-seconds of one grading of each chapter's reference, with warm caches, on an idle machine."""
+"""Measure how many core-seconds a grading of each chapter's reference takes, with warm caches on an idle machine."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ class ExchangeSubmission:
 
     @property
     def key(self) -> str:
-        """The key of its hand-in, which is the same in each poll, so that it is handed in only once."""
+        """The key under which it is handed in: the same in each poll, so that it is handed in only once."""
         return hashlib.sha256(self.folder.name.encode()).hexdigest()[:32]
 
 

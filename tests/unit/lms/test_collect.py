@@ -46,7 +46,7 @@ def collect_entries(folder: Path, table: str) -> tuple[CollectedSubmissions, dic
 
 
 def location_in(path: Path, folder: Path) -> str:
-    """Return the path of a submission in a download, or the names of its files if they were gathered."""
+    """Return a submission's path in a download, or the names of its files if they were copied into a new folder."""
     if path.is_relative_to(folder):
         return str(path.relative_to(folder))
     return " + ".join(sorted(child.name for child in path.iterdir()))

@@ -1,4 +1,4 @@
-"""Each reader of a student's data: any data are read, or the error is the student's fault.
+"""Each reader of a student's data accepts any input, or raises an error that is the student's fault.
 
 `make test` tries a hundred generated values for each reader, the same in each run. To try a thousand others, run
 `pytest tests/unit/reading --hypothesis-profile=thousand`.

@@ -54,7 +54,7 @@ def test_each_tick_has_its_own_random_words_drawn_together_or_singly() -> None:
 
 
 def test_importing_the_simulator_imports_no_heavy_library() -> None:
-    """Neither numba nor a plotting library, ROS or pandas is imported, and the array engine needs none of them."""
+    """The import loads no numba, plotting library, ROS or pandas, and the array engine needs none of them."""
     script = """
 import sys
 import sim
