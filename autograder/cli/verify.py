@@ -56,6 +56,7 @@ HEADINGS = ("submission", "marks", "verdict")
     "mutants.yaml. Review the diff.",
 )
 @click.option("--mutants", "mutants_only", is_flag=True, help="Grade only the generated mutants.")
+@click.option("--named", "named_only", is_flag=True, help="Grade everything except the generated mutants.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
@@ -72,6 +73,7 @@ def verify(
     names: tuple[str, ...],
     record: bool,
     mutants_only: bool,
+    named_only: bool,
     out: Path,
     jobs: int,
     seed: int,
@@ -96,6 +98,8 @@ def verify(
     """
     if record and quick:
         raise click.UsageError("--record needs complete gradings: remove --quick")
+    if mutants_only and (named_only or quick or record):
+        raise click.UsageError("--mutants grades only generated mutants, and the other option grades none: remove one")
     started_at = time.monotonic()
     chapters = assignments or tuple(suites.graded_assignments())
     known_assignments = {*suites.graded_assignments()}.intersection(chapters)
@@ -105,13 +109,14 @@ def verify(
         sys.exit(1)
     all_cases = [] if mutants_only else [case for name in chapters for case in cases(name, quick=quick)]
     selected_cases = [case for case in all_cases if not names or case.name in names]
-    generated_by_chapter = {} if quick or record else {name: generated_mutants(name) for name in chapters}
+    is_without_generated = quick or record or named_only
+    generated_by_chapter = {} if is_without_generated else {name: generated_mutants(name) for name in chapters}
     mutants = {
         chapter: [mutant for mutant in chapter_mutants.mutants if not names or mutant.id in names]
         for chapter, chapter_mutants in generated_by_chapter.items()
     }
     if not selected_cases and not any(mutants.values()):
-        raise click.UsageError(f"no submission is called {' or '.join(names)}")
+        raise click.UsageError(_unknown_names(names))
     with Progress(len(selected_cases)) as progress, WorkerPool(Isolation(isolation), jobs) as workers:
 
         def show(verdict: Verdict) -> None:
@@ -181,6 +186,15 @@ def _run_mutants(
     return completed_chapter
 
 
+def _unknown_names(names: Sequence[str]) -> str:
+    if not names:
+        return "these assignments have no submissions to grade"
+    return (
+        f"no submission is called {' or '.join(names)}: --only takes reference, release, the names of variants and "
+        "attacks, and the ids of mutants"
+    )
+
+
 def _case_name(verdict: Verdict) -> str:
     is_unique = verdict.kind in (CaseKind.REFERENCE, CaseKind.RELEASE)
     kind = "" if is_unique else f"{verdict.kind.value} "
@@ -188,10 +202,13 @@ def _case_name(verdict: Verdict) -> str:
 
 
 def _marks_text(verdict: Verdict) -> str:
-    """Return the score of a submission, or how many checks it fails if only a part of them was run."""
+    """Return the score of a submission, or the outcome of each check if only a part of them was run."""
     if not verdict.only or verdict.result.status is not Status.GRADED:
         return score_text(verdict.result)
-    return f"fails {len(failed_checks(verdict.result) & {*verdict.only})} of {len(verdict.only)} checks"
+    failed_ids = sorted(failed_checks(verdict.result) & {*verdict.only})
+    passed_ids = sorted({*verdict.only}.difference(failed_ids))
+    outcomes = (("fails", failed_ids), ("passes", passed_ids))
+    return "; ".join(f"{outcome} {', '.join(ids)}" for outcome, ids in outcomes if ids)
 
 
 def _to_json(verdict: Verdict) -> dict[str, str]:

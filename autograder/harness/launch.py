@@ -95,13 +95,6 @@ def sandbox(workspace: Workspace) -> Sandbox:
 class LaunchHarness(contextlib.ExitStack):
     """A running `ros2 launch` and the grader's node that talks with the launched nodes over DDS; a context manager.
 
-    For example::
-
-        with LaunchHarness(workspace, "bringup", "robot.launch.py", subscribes={"/cmd_vel": Twist}) as harness:
-            harness.wait_for(lambda: "/driver" in harness.nodes(), 20.0)
-            harness.parameters("/driver", "speed")
-            harness.interrupt(20.0)
-
     The end of a launch is not an error: see `status` and `output`. Every waiting method raises a
     `StudentError` if the launch exceeds a limit.
 
@@ -111,7 +104,9 @@ class LaunchHarness(contextlib.ExitStack):
         file: the launch file's name.
         arguments: launch arguments by name.
         subscribes: topics that the grader subscribes to from the start, with their types.
-        publishes: topics that the grader publishes on as a sensor does, best effort, with their types.
+        publishes: topics that the grader publishes on, with their types.
+        qos: for topics in `publishes`, a QoS profile or the size of a reliable queue. The default is that of a sensor,
+            best effort: a subscription that asks for reliable messages then receives none.
         environment: environment variables that are set for the launch.
 
     Attributes:
@@ -130,10 +125,11 @@ class LaunchHarness(contextlib.ExitStack):
         *,
         subscribes: Mapping[str, type] | None = None,
         publishes: Mapping[str, type] | None = None,
+        qos: Mapping[str, QoSProfile | int] | None = None,
         environment: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__()
-        topics = {"subscribes": subscribes, "publishes": publishes}
+        topics: dict[str, Any] = {"subscribes": subscribes, "publishes": publishes, "qos": qos}
         self.another = partial(LaunchHarness, workspace, package, file, arguments, **topics, environment=environment)
         self._domain = Domain(workspace.domain + next(_DOMAIN_OFFSETS))
         node_sandbox = sandbox(replace(workspace, domain=self._domain.number))
@@ -141,7 +137,7 @@ class LaunchHarness(contextlib.ExitStack):
         assignments = [f"{name}:={value}" for name, value in (arguments or {}).items()]
         # Without a terminal, the launch itself has to pass Ctrl-C on.
         self._command = ("launch", "--noninteractive", package, file, *assignments)
-        self._subscribes, self._publishes = dict(subscribes or {}), dict(publishes or {})
+        self._subscribes, self._publishes, self._qos = dict(subscribes or {}), dict(publishes or {}), dict(qos or {})
         self._received: dict[str, list[Any]] = {topic: [] for topic in self._subscribes}
         self._status_text = b""
 
@@ -153,7 +149,10 @@ class LaunchHarness(contextlib.ExitStack):
         for topic, kind in self._subscribes.items():
             self._grader_node.subscribe(topic, kind, _append_to(self._received[topic]), profile)
         create = self._grader_node.node.create_publisher
-        self._publishers = {name: create(kind, name, qos_profile_sensor_data) for name, kind in self._publishes.items()}
+        self._publishers = {
+            topic: create(kind, topic, self._qos.get(topic, qos_profile_sensor_data))
+            for topic, kind in self._publishes.items()
+        }
         record_data("The programs of the launch")
         self._status_pipe, write_end = os.pipe()
         self.callback(os.close, self._status_pipe)

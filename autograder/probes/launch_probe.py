@@ -29,6 +29,7 @@ SHOW_SECONDS = 30.0  # real time for `ros2 launch -s`
 KILLED = "-9"  # the exit code of a process that neither SIGINT nor SIGTERM has ended
 
 _EXCEPTION = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<reason>.+(?:\n - .+)?)")
+_WORKSPACE = re.compile(r"/[^\s'\"]*/ws[^/\s]*/(?=(?:src|install)/)")  # the grader's path of a workspace
 _NOT_READ = "Caught multiple exceptions when trying to load file"
 _PLACE = re.compile(r'^  File "(?P<file>ws/src/[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
 _LABEL = r"\[(?P<label>(?P<name>[^\[\]\n]+)-\d+)\]: "  # the name and the number of a program
@@ -103,11 +104,12 @@ def expect_nodes(harness: LaunchHarness, expected: Collection[str]) -> None:
     summary = f"The graph contains {', '.join(nodes)}" if nodes else "No node is running"
     missing = sorted((Counter(expected) - Counter(nodes)).elements())
     extra = sorted((Counter(nodes) - Counter(expected)).elements())
-    differences = [f"missing: {', '.join(missing)}"] if missing else []
-    differences += [f"not expected: {', '.join(extra)}"] if extra else []
+    differences = [f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"] if missing else []
+    differences += [f"{', '.join(extra)} {'is' if len(extra) == 1 else 'are'} not expected"] if extra else []
     near = [f"{other} runs instead of {name}" for name in missing for other in extra if _base(name) == _base(other)]
     reason = failure(harness.output)
-    parts = [f"{summary}: {'; '.join(near or differences)}.", reason and f"The launch reported: {reason}"]
+    details = f": {'; '.join(near)}" if near else f"; {'; '.join(differences)}"
+    parts = [f"{summary}{details}.", reason and f"The launch reported: {reason}"]
     raise CheckFailed(" ".join(filter(None, parts)))
 
 
@@ -168,7 +170,7 @@ def _lost_a_race(output: str) -> bool:
 
 def expect_stopped(stop: Stop) -> None:
     """Fail the check unless the launch has ended, with exit status 0, and has left nothing."""
-    expect(stop.status is not None, f"After {STOP_SECONDS:.0f} s it still ran, and had to be killed.")
+    expect(stop.status is not None, f"It was still running after {STOP_SECONDS:.0f} s and had to be killed.")
     expect(not stop.left, f"It ended, but left a process running: {', '.join(stop.left)[:200]}.")
     expect(stop.status == 0, f"It ended with exit status {stop.status}, instead of 0.")
 
@@ -197,7 +199,8 @@ def node_names(output: str, program: str) -> set[str]:
 
 
 def failure(output: str) -> str:
-    """Return one line of a launch's output that says why it failed, or an empty string."""
+    """Return one line of a launch's output that says why it failed, or an empty string. Paths begin with `ws`."""
+    output = _WORKSPACE.sub("ws/", output)
     if caught := _EXCEPTION.search(output):
         return " ".join(caught["reason"].split())
     died = [f"{match['name']} died with exit code {match['code']}" for match in _DIED.finditer(output)]

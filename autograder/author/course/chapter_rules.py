@@ -20,6 +20,7 @@ from autograder.author.course.contract_rules import cells_findings, coverage_fin
 from autograder.author.course.copy_rules import target_findings
 from autograder.author.course.exceptions import CourseError
 from autograder.author.course.findings import Finding, display_path
+from autograder.author.course.import_rules import imports_findings
 from autograder.author.course.mutant_rules import mutants_findings, unknown_records, unproven_checks
 from autograder.author.course.notebook_rules import rules_findings
 from autograder.author.course.reference_rules import packages_findings, python_findings
@@ -117,6 +118,7 @@ def read_checks(assignment: str) -> ParsedChecks:
     ids = None if checks is None else [check.id for check in checks if check.visibility is Visibility.HIDDEN]
     if ids is None and hidden_suite.is_complete:
         ids = [*hidden_suite.locations]
+    findings += imports_findings(folder)
     findings += packages_findings(sources)
     findings += mutants_findings(folder, ids, sources)
     findings += variants_findings(folder / "variants", sources)

@@ -15,6 +15,7 @@ from nbformat import NotebookNode
 from autograder.author.course.cells import metadata
 from autograder.author.course.findings import Finding
 from autograder.author.course.forms import Form, in_form
+from autograder.author.course.schema_sentences import suggestion
 from autograder.suite import Check
 from autograder.suite.contract import requirements
 from autograder.suite.quotation import quote
@@ -44,12 +45,10 @@ def coverage_findings(
             message = f"the requirement {requirement.id!r} is marked as unchecked, but a check covers it"
             yield Finding(name, None, message)
     for check in checks:
-        unknown_ids = ", ".join(
-            repr(requirement_id) for requirement_id in check.covers if requirement_id not in known_requirements
-        )
-        if unknown_ids or not check.covers:
-            message = f"covers {unknown_ids}, which no cell names" if unknown_ids else "covers no requirement"
-            file, line = locations.get(f"{check.visibility.value} {check.id}", (name, None))
+        unknown_ids = [requirement_id for requirement_id in check.covers if requirement_id not in known_requirements]
+        messages = [f"covers {id!r}, which no cell names: {suggestion(id, known_requirements)}" for id in unknown_ids]
+        file, line = locations.get(f"{check.visibility.value} {check.id}", (name, None))
+        for message in messages if check.covers else ["covers no requirement"]:
             yield Finding(file, None, f"the {check.visibility.value} check {check.id!r} {message}", line)
 
 
@@ -74,7 +73,8 @@ def _cell_findings(cell: NotebookNode, is_exercise: bool) -> Iterator[str]:
     names_requirements = contract or explains or hidden_functions or is_exercise
     for piece in _pieces(cell, hidden_functions) if names_requirements else ():
         if not any(text in piece for text in texts):
-            yield f"neither `contract` nor `explains` names a sentence of {piece!r}"
+            advice = "give it an id in `contract`, or quote it in `explains` if it requires nothing"
+            yield f"neither `contract` nor `explains` names a sentence of {piece!r}: {advice}"
 
 
 def _pieces(cell: NotebookNode, hidden_functions: Sequence[str]) -> Iterator[str]:

@@ -46,13 +46,17 @@ def mutants_findings(folder: Path, checks: Collection[str] | None, sources: Coll
 
 
 def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
-    """Yield a finding for each hidden check if no mutant was written for it and none is recorded to fail it."""
+    """Yield a finding for each hidden check if no mutant was written for it and none is recorded to fail it.
+
+    If `mutants.yaml` cannot be read, another finding says so, and this function yields none.
+    """
     file = _read_mutants(folder)
     entries = [entry for _, entry in _entries(file)]
     rows = _read_snapshot(folder).data
     proven_checks = {str(entry.get("check")) for entry in entries}
     proven_checks |= {check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)}
-    for check in checks:
+    is_readable = file.data is not None or not file.findings
+    for check in checks if is_readable else ():
         if check not in proven_checks:
             yield file.finding((), f"no mutant fails the check `{check}`: add one with an error that it finds")
 

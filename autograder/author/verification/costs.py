@@ -78,7 +78,8 @@ def unexplained(costs: Sequence[Cost]) -> list[str]:
     """Return a sentence for each mutant that loses too many points without a reason."""
     return [
         f"{cost.assignment} mutant {cost.mutant}: it loses {cost.lost:g} points, {cost.check} is worth "
-        f"{cost.points:g}, and no reason is given"
+        f"{cost.points:g}, and no reason is given: write a `reason` in mutants.yaml, or declare a check `after` "
+        f"{cost.check}"
         for cost in costs
         if cost.is_expensive and not cost.reason
     ]
@@ -87,7 +88,7 @@ def unexplained(costs: Sequence[Cost]) -> list[str]:
 def counts(costs: Sequence[Cost]) -> dict[str, object]:
     """Return how many mutants lose so many points that they need a reason, and how many of these have none."""
     expensive = sum(cost.is_expensive for cost in costs)
-    return {"mutants_dear": expensive, "mutants_dear_unexplained": len(unexplained(costs))}
+    return {"mutants_expensive": expensive, "mutants_expensive_unexplained": len(unexplained(costs))}
 
 
 def report(costs: Sequence[Cost]) -> str:

@@ -64,7 +64,9 @@ def verify_full_marks(result: Result) -> str:
     if result.diagnosis.kind is not Kind.OK:
         return result.diagnosis.sentence
     failed_ids = failed_checks(result)
-    return f"fails {', '.join(sorted(failed_ids))}" if failed_ids else ""
+    if not failed_ids:
+        return ""
+    return f"fails {', '.join(sorted(failed_ids))}: {first_sentence(result)}"
 
 
 def verify_zero(result: Result) -> str:
@@ -95,7 +97,8 @@ def verify_mutant(mutant: Mutant, result: Result, only: frozenset[str] = frozens
     if mutant.check in graded_ids - failed_ids:
         differences.append(f"passes {mutant.check}, for which it was written")
     if not recorded_ids:
-        differences.append(f"has no recorded failures: {RECORD} writes them")
+        command = f"autograder verify --assignment {result.assignment} --only {mutant.id} --record"
+        differences.append(f"has no recorded failures: `{command}` writes them")
     else:
         failed_ids, recorded_ids = failed_ids & graded_ids, recorded_ids & graded_ids
         changes = [f"also fails {', '.join(sorted(failed_ids - recorded_ids))}"] if failed_ids - recorded_ids else []

@@ -99,6 +99,16 @@ if sys.argv[1] == 'always' or not marker.exists():
     context._Context__context = StaleHandle(context.handle)
 rclpy.try_shutdown()
 """
+ECHO = f"""#!{sys.executable}
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node('echo')
+publisher = node.create_publisher(String, '/out', 10)
+node.create_subscription(String, '/in', publisher.publish, 10)
+{SPIN}"""
 SLOW = f"""#!{sys.executable}
 import time
 
@@ -226,9 +236,26 @@ def install_program(workspace: Workspace) -> Callable[[str], Workspace]:
     return install
 
 
+def test_a_reliable_subscription_hears_only_a_publisher_that_is_reliable(
+    install_program: Callable[[str], Workspace],
+) -> None:
+    installed = install_program(ECHO)
+    topics = {"subscribes": {"/out": String}, "publishes": {"/in": String, "/sensor": String}}
+
+    def is_answered(harness: LaunchHarness) -> bool:
+        harness.publish("/in", String(data="hello"))
+        return bool(harness.messages("/out"))
+
+    with LaunchHarness(installed, "fleet", "given.launch.py", {"how": "echo"}, **topics, qos={"/in": 10}) as harness:
+        assert harness.wait_for(lambda: is_answered(harness), PATIENCE), harness.output
+    with LaunchHarness(installed, "fleet", "given.launch.py", {"how": "echo"}, **topics) as harness:
+        assert harness.wait_for(lambda: "/echo" in harness.subscribers("/in"), PATIENCE), harness.output
+        assert not harness.wait_for(lambda: is_answered(harness), 1.0)
+
+
 def test_a_program_whose_node_appears_late_is_not_overlooked(install_program: Callable[[str], Workspace]) -> None:
     late = LaunchHarness(install_program(LATE), "fleet", "given.launch.py", {"how": "with_beacon"})
-    with late as harness, pytest.raises(CheckFailed, match="not expected: /late"):
+    with late as harness, pytest.raises(CheckFailed, match="/late is not expected"):
         launch_probe.expect_nodes(harness, ["/beacon"])
 
 
@@ -273,7 +300,7 @@ def test_a_launch_file_that_is_missing_or_broken_ends_the_launch_with_a_reason(w
         launch_probe.declared_arguments(workspace, "fleet", "absent.launch.py")
     with LaunchHarness(workspace, "fleet", "broken.launch.py") as harness:
         with pytest.raises(
-            CheckFailed, match=r"No node is running: missing: /light. The launch reported: .*'config' is not"
+            CheckFailed, match=r"No node is running; /light is missing. The launch reported: .*'config' is not"
         ):
             launch_probe.expect_nodes(harness, ["/light"])
         assert harness.status == 1

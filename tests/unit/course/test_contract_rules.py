@@ -26,7 +26,10 @@ TABLE = """The node is called `guard`.
   exit status 0."""
 ROW, ENDS = "| no scan yet | 0 | 0 |", "- It ends with exit status 0."
 FUNCTION = '%%writefile ws/a.py\ndef main():\n    """Run."""\n'
-UNNAMED = "neither `contract` nor `explains` names a sentence of {!r}"
+UNNAMED = (
+    "neither `contract` nor `explains` names a sentence of {!r}: give it an id in `contract`, or quote it in "
+    "`explains` if it requires nothing"
+)
 MAX_UNCHECKED = 12  # in the whole course
 
 
@@ -64,7 +67,7 @@ def test_a_check_without_a_requirement_is_found() -> None:
     findings = messages(contract_notebook(), check("stops", "waits", "ends"), check("bare"), check("other", "flies"))
     assert findings == [
         "the hidden check 'bare' covers no requirement",
-        "the hidden check 'other' covers 'flies', which no cell names",
+        "the hidden check 'other' covers 'flies', which no cell names: the known names are waits, ends",
     ]
 
 
@@ -112,7 +115,7 @@ def test_a_sentence_that_the_release_does_not_show_is_found() -> None:
 def test_the_docstring_of_a_function_that_a_student_writes_needs_an_id() -> None:
     source = f"{FUNCTION}    # BEGIN SOLUTION\n    pass\n    # END SOLUTION"
     nb = notebook(code(source, "main", course={"hide": ["main"]}, nbgrader=solution("main")))
-    assert messages(nb) == ["neither `contract` nor `explains` names a sentence of 'Run.'"]
+    assert messages(nb) == [UNNAMED.format("Run.")]
 
 
 def test_an_unchecked_sentence_has_no_check() -> None:

@@ -142,6 +142,10 @@ def test_the_failure_names_the_process_that_died_and_the_cause() -> None:
             "[py]: - NameError: x",
         ),
         ("file 'x.launch.py' was not found, error\n", "file 'x.launch.py' was not found, error"),
+        (
+            CAUGHT + "cannot read /tmp/worker-x/job/ws-bad/install/lab/share/lab/config/lab.yaml\n",
+            "cannot read ws/install/lab/share/lab/config/lab.yaml",
+        ),
         ("[INFO] [launch]: Default logging verbosity is set to INFO\n", ""),
         ("", ""),
     ],
@@ -162,7 +166,7 @@ def test_an_unwritten_part_is_reported_as_unwritten() -> None:
 @pytest.mark.parametrize(
     ("stop", "sentence"),
     [
-        (Stop(None, ()), "After 20 s it still ran, and had to be killed."),
+        (Stop(None, ()), "It was still running after 20 s and had to be killed."),
         (Stop(0, ("sleep 600",)), "It ended, but left a process running: sleep 600."),
         (Stop(1, ()), "It ended with exit status 1, instead of 0."),
     ],

@@ -105,11 +105,12 @@ def test_the_table_and_the_counts_show_mutants_without_a_reason(
     make_result: MakeResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows = [cost_of(make_result, monkeypatch, "turns", "ends"), cost_of(make_result, monkeypatch, "turns")]
-    assert costs.counts(rows) == {"mutants_dear": 1, "mutants_dear_unexplained": 1}
+    assert costs.counts(rows) == {"mutants_expensive": 1, "mutants_expensive_unexplained": 1}
     assert "| 02 | m | turns | 2 | 7 | near, left, ends | **no reason** |" in costs.report(rows)
     assert "| 02 | m | turns | 2 | 2 | near, left |  |" in costs.report(rows)
     assert costs.unexplained(rows) == [
-        "02_nodes mutant m: it loses 7 points, turns is worth 2, and no reason is given",
+        "02_nodes mutant m: it loses 7 points, turns is worth 2, and no reason is given: write a `reason` in "
+        "mutants.yaml, or declare a check `after` turns",
     ]
     assert costs.report([]) == ""
 

@@ -51,7 +51,7 @@ def verdict(kind: CaseKind, mismatch: str = "", *failed: str) -> Verdict:
 
 def test_a_correct_answer_has_every_point() -> None:
     assert verify_full_marks(result()) == ""
-    assert verify_full_marks(result("nan")) == "fails nan"
+    assert verify_full_marks(result("nan")) == "fails nan: so"
 
 
 def test_an_untouched_release_gains_no_points() -> None:
@@ -81,7 +81,10 @@ def test_a_mutant_fails_its_own_check_and_exactly_the_recorded_ones() -> None:
     assert wrong.startswith(f"passes {mutant.check}, for which it was written; also fails nan; passes ")
     assert "`autograder verify --record`" in wrong
     unrecorded = replace(mutant, fails=frozenset())
-    assert verify_mutant(unrecorded, result(*mutant.fails)).startswith("has no recorded failures")
+    assert verify_mutant(unrecorded, result(*mutant.fails)) == (
+        "has no recorded failures: "
+        "`autograder verify --assignment 02_nodes --only minus_inf_dropped --record` writes them"
+    )
 
 
 def test_the_summary_counts_each_kind() -> None:

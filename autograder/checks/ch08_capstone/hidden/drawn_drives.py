@@ -191,7 +191,7 @@ def turns(draw: st.DrawFn, limit: float = DEFAULTS["safety_distance"]) -> Drive:
 
 @st.composite
 def stops(draw: st.DrawFn, timeout: float = DEFAULTS["data_timeout"]) -> Drive:
-    """Draw a drive on a clear way, with blind sectors, old scans and silences."""
+    """Draw a drive along a clear path, with blind sectors, stale scans and silences."""
     readings = st.sampled_from((math.nan, math.inf, 1.0))
     sides = readings | st.just(-math.inf)
     ages = st.sampled_from((0.0, 0.0, timeout - 0.3, timeout - 0.1, timeout + 0.1, timeout + 0.5, 5.0))
