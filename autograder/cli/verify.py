@@ -143,7 +143,7 @@ def verify(
     echo("\n" + table(rows, HEADINGS))
     mutant_costs = () if quick else costs.costs(verdicts)
     figures = summary(verdicts, time.monotonic() - started_at) | counts(chapters) | costs.counts(mutant_costs)
-    echo("\n" + "  ".join(f"{name} {value}" for name, value in figures.items()))
+    echo("\n" + "  ".join(f"{name} {value}" for name, value in figures.items() if value not in (None, [])))
     document = {
         "summary": figures,
         "claims": [_to_json(verdict) for verdict in verdicts],

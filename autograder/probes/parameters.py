@@ -152,7 +152,7 @@ def _in_type_of(declared: Value, value: Value) -> Value:
 
 
 def differences(values: Mapping[str, Value], expected: Mapping[str, Value]) -> list[str]:
-    """Describe the parameters whose value differs from the expected one."""
+    """Return a phrase without a full stop for each parameter whose value differs from the expected one."""
     return [
         f"{name} is {value_text(values.get(name))} instead of {value_text(value)}"
         for name, value in expected.items()

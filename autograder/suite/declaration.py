@@ -151,7 +151,15 @@ def check(
     after: tuple[str, ...] = (),
     doc: str | None = None,
 ) -> Callable[[F], F]:
-    """Declare a pytest function as a check. `Check` explains the arguments. `covers` may be a single id.
+    """Declare a pytest function as a check.
+
+    Args:
+        points: the points that it can earn, above 0.
+        group: the locked grade cell to which its points belong.
+        covers: ids of the requirements that it covers, or a single id.
+        needs: ids of checks without which this one cannot be run; it runs only if all of them passed.
+        after: ids of checks whose failure is a likely cause if this one also fails; it runs in any case.
+        doc: a page to read, or None.
 
     Raises:
         GraderError: the function's name, docstring or points are not valid for a check.

@@ -104,6 +104,16 @@ def test_verify_lists_the_generated_mutants_that_no_check_fails(course: Path, tm
     assert (count > 20, count - killed_count) == (True, len(survivors)), process.stdout
 
 
+@pytest.mark.promise("`--named` grades everything except the generated mutants.")
+@pytest.mark.slow
+def test_verify_can_leave_out_the_generated_mutants(course: Path) -> None:
+    process = autograder(course, "verify --assignment 10_mapping --named -j 2")
+    assert process.returncode == 0, process.stdout + process.stderr
+    names = re.findall(r"^10_mapping (reference|release|variant|mutant) .* as expected$", process.stdout, re.MULTILINE)
+    assert {*names} == {"reference", "release", "variant", "mutant"}
+    assert "killed" not in process.stdout
+
+
 @pytest.mark.promise(
     "Without `--only`, `verify` also generates small errors in everything that students write",
     "Without `--quick`, `verify` also generates mutants",

@@ -11,7 +11,7 @@ from autograder.course_paths import ROOT
 NEW = ROOT / "assets" / "new" / "chapter" / "checks"
 
 
-@pytest.mark.promise("Checks import everything from `autograder.checking`, and no other part of the autograder:")
+@pytest.mark.promise("Checks import everything from `autograder.checking`, and no other part of the autograder.")
 def test_the_checks_of_a_new_chapter_import_no_other_part_of_the_autograder() -> None:
     imported = {
         node.module
