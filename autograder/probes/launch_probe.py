@@ -29,7 +29,8 @@ SHOW_SECONDS = 30.0  # real time for `ros2 launch -s`
 KILLED = "-9"  # the exit code of a process that neither SIGINT nor SIGTERM has ended
 
 _EXCEPTION = re.compile(r"Caught exception in launch \(see debug for traceback\): (?P<reason>.+(?:\n - .+)?)")
-_WORKSPACE = re.compile(r"/[^\s'\"]*/ws[^/\s]*/(?=(?:src|install)/)")  # the grader's path of a workspace
+_PATH = re.compile(r"/[^\s'\"]+")
+_WORKSPACE = re.compile(r"/ws[^/]*(?=/(?:src|install)/)")  # a workspace's folder in a path
 _NOT_READ = "Caught multiple exceptions when trying to load file"
 _PLACE = re.compile(r'^  File "(?P<file>ws/src/[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
 _LABEL = r"\[(?P<label>(?P<name>[^\[\]\n]+)-\d+)\]: "  # the name and the number of a program
@@ -200,7 +201,7 @@ def node_names(output: str, program: str) -> set[str]:
 
 def failure(output: str) -> str:
     """Return one line of a launch's output that says why it failed, or an empty string. Paths begin with `ws`."""
-    output = _WORKSPACE.sub("ws/", output)
+    output = _PATH.sub(lambda path: _in_workspace(path[0]), output)
     if caught := _EXCEPTION.search(output):
         return " ".join(caught["reason"].split())
     died = [f"{match['name']} died with exit code {match['code']}" for match in _DIED.finditer(output)]
@@ -265,6 +266,12 @@ def with_files(
             target.write_text(text)
             target.chmod(mode)
     return replace(workspace, root=root)
+
+
+def _in_workspace(path: str) -> str:
+    """Return a path in a workspace without the folders above it, which are the grader's; any other path as it is."""
+    folder = _WORKSPACE.search(path)
+    return f"ws{path[folder.end() :]}" if folder else path
 
 
 def _base(name: str) -> str:
