@@ -51,12 +51,13 @@ def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
     If `mutants.yaml` cannot be read, another finding says so, and this function yields none.
     """
     file = _read_mutants(folder)
+    if file.findings and file.data is None:
+        return
     entries = [entry for _, entry in _entries(file)]
     rows = _read_snapshot(folder).data
     proven_checks = {str(entry.get("check")) for entry in entries}
     proven_checks |= {check for entry in entries for check in _recorded_failures(rows.get(entry.get("id"), ()), checks)}
-    is_readable = file.data is not None or not file.findings
-    for check in checks if is_readable else ():
+    for check in checks:
         if check not in proven_checks:
             yield file.finding((), f"no mutant fails the check `{check}`: add one with an error that it finds")
 
