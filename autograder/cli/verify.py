@@ -53,7 +53,7 @@ HEADINGS = ("submission", "marks", "verdict")
     "--record",
     is_flag=True,
     help="Write the failed checks and the diagnosis of each graded mutant to mutants.snapshot.yaml, beside "
-    "mutants.yaml. Review the diff.",
+    "mutants.yaml, and grade no generated mutants. Review the diff.",
 )
 @click.option("--mutants", "mutants_only", is_flag=True, help="Grade only the generated mutants.")
 @click.option("--named", "named_only", is_flag=True, help="Grade everything except the generated mutants.")

@@ -201,7 +201,10 @@ def node_names(output: str, program: str) -> set[str]:
 
 def failure(output: str) -> str:
     """Return one line of a launch's output that says why it failed, or an empty string. Paths begin with `ws`."""
-    output = _PATH.sub(lambda path: _in_workspace(path[0]), output)
+    return _PATH.sub(lambda path: _in_workspace(path[0]), _failure_line(output))
+
+
+def _failure_line(output: str) -> str:
     if caught := _EXCEPTION.search(output):
         return " ".join(caught["reason"].split())
     died = [f"{match['name']} died with exit code {match['code']}" for match in _DIED.finditer(output)]

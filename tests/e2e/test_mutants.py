@@ -1,15 +1,15 @@
-"""The verification for each change: `autograder verify --quick`, rewritten answers, and some generated mutants.
+"""The verification for each change, `autograder verify --quick`: references, releases, variants, a mutant for each check.
 
-It grades every reference, release and variant, and one mutant for each check. `make nightly` runs the complete
-verification.
+`make nightly` runs the complete verification. Here it adds rewritten answers and some generated mutants.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
+from _pytest.mark import ParameterSet
 
 from autograder.author.verification.cases import Case, cases, rewritten_cases
 from autograder.author.verification.generated_mutants import generated_mutants
@@ -23,11 +23,17 @@ from autograder.run.sandbox.process import ExitReason
 from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.suite import suites
 
-VERIFICATION = {
-    f"{case.assignment}-{case.kind.value}-{case.name}": case
+def named(test_cases: Iterable[Case], *marks: pytest.MarkDecorator) -> Iterator[ParameterSet]:
+    """Yield each case as a parameter of a test, with an id."""
+    for case in test_cases:
+        yield pytest.param(case, id=f"{case.assignment}-{case.kind.value}-{case.name}", marks=marks)
+
+
+VERIFICATION = [
+    parameter
     for name in suites.graded_assignments()
-    for case in (*cases(name, quick=True), *rewritten_cases(name))
-}
+    for parameter in (*named(cases(name, quick=True)), *named(rewritten_cases(name), pytest.mark.nightly))
+]
 # Chapters whose generated mutants were all graded, with a reason for every survivor.
 SURVEYED = [name for name in suites.graded_assignments() if (suites.hidden(name).folder / "survivors.yaml").is_file()]
 SAMPLE_SIZE = 4  # generated mutants of a chapter
@@ -46,7 +52,7 @@ def workers() -> Iterator[WorkerPool]:
     "The tests execute the notebooks and grade some of the submissions with a known mark.",
 )
 @pytest.mark.slow
-@pytest.mark.parametrize("case", VERIFICATION.values(), ids=VERIFICATION)
+@pytest.mark.parametrize("case", VERIFICATION)
 def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, tmp_path: Path) -> None:
     (verdict,) = verify_cases([case], seed=2026, out=tmp_path, workers=workers)
     log = tmp_path / case.assignment / case.name / "grader.log"
@@ -56,6 +62,7 @@ def test_a_submission_gets_its_expected_result(case: Case, workers: WorkerPool, 
 
 
 @pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("assignment", SURVEYED)
 def test_generated_mutants_of_each_chapter_are_killed_or_have_a_reason(assignment: str, workers: WorkerPool) -> None:
     generated = generated_mutants(assignment)

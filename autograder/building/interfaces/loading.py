@@ -1,4 +1,4 @@
-"""Loads a student's interface packages from the texts of their definitions, as message classes with plain values."""
+"""Builds message classes with plain values from the text of a student's interface definitions."""
 
 from __future__ import annotations
 

@@ -128,7 +128,7 @@ def text_of(data: bytes) -> str:
 
 
 def is_stub(text: str, released: str) -> bool:
-    """Return whether a text still has all stubs of the released text."""
+    """Return whether a text still has all the stubs of its released version."""
     return STILL_TO_BE_WRITTEN in released and text.count(STILL_TO_BE_WRITTEN) >= released.count(STILL_TO_BE_WRITTEN)
 
 

@@ -1,4 +1,4 @@
-"""Checks of the file package.xml, which colcon and rosdep read, in the package that the student makes."""
+"""Checks of package.xml, which colcon and rosdep read, in the package that the student creates."""
 
 from __future__ import annotations
 

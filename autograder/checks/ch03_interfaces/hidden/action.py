@@ -13,6 +13,7 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from autograder.checking import LOCKSTEP, expect, group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import message_period
+from autograder.checks.ch03_interfaces.hidden.arrival import LONG_SECONDS, STATUS_NAMES, expect_exact_arrival
 from autograder.checks.ch03_interfaces.hidden.goals import EDGE, INVALID_GOALS, PLAIN_DISTANCE, VALID_GOALS
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_DISTANCE, MAX_SPEED
@@ -34,15 +35,7 @@ PUSH = 0.2  # m that the robot is pushed back; it makes up for this within a sec
 FEEDBACK_SECONDS = 0.25
 SILENCE = 2.0  # s without odometry before a goal
 DISCOVERY_SECONDS = 5.0  # s of real time until an action is in the graph
-SHORT_OF, GOAL, BEYOND = 0.3055, 0.308, 0.3095  # m: just short of the goal, the goal, just beyond it
-CREEP = 0.01  # m/s: a millimetre between two commands
 HOLD_SECONDS = 0.8  # s for which the wheels are held, too short for the goal to be aborted
-LONG_SECONDS = 20.0  # s to wait for something that takes a second or two; in real time, the machine may be busy
-STATUS_NAMES = {
-    GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
-    GoalStatus.STATUS_CANCELED: "CANCELED",
-    GoalStatus.STATUS_ABORTED: "ABORTED",
-}
 EXECUTOR_HINTS = (
     "While execute runs in its loop, other callbacks need another thread: spin with a MultiThreadedExecutor.",
     "main, which is given, spins a MultiThreadedExecutor. Keep it as it is.",
@@ -187,7 +180,7 @@ def test_drive_result(placed_driver: Driver, draw: random.Random) -> None:
         expect(is_default_qos, "cmd_vel does not have the quality of service of a plain 10.", fraction=0.5)
     expect_volatile(placed_driver.node, ODOMETRY)
     if placed_driver.time == LOCKSTEP:  # in real time, a busy machine may cause a second without progress
-        _expect_exact_arrival(placed_driver)
+        expect_exact_arrival(placed_driver)
     if reported_distances and placed_driver.time == LOCKSTEP:  # in real time, it may have made up for the push
         least = min(reported_distances)
         message = f"After a push from {peak:.2f} m back to {peak - PUSH:.2f} m, the feedback still had {least:.2f} m."
@@ -281,24 +274,6 @@ def test_drive_limits(placed_driver: Driver, draw: random.Random) -> None:
 def drives_straight(command: Twist, speed: float) -> bool:
     """Return whether a command drives straight on at a speed."""
     return bool(abs(command.linear.x - speed) <= SLACK and abs(command.angular.z) <= SLACK)
-
-
-def _expect_exact_arrival(driver: Driver) -> None:
-    """Fail the check unless a held robot's goal succeeds once the robot is pushed beyond it, and not just before."""
-    driver.is_stuck = True
-    goal = driver.start(GOAL, CREEP)
-    driver.roll(goal, 0.3)
-    driver.shift(SHORT_OF)
-    driver.roll(goal, 0.3)
-    is_early = goal.result is not None
-    driver.shift(BEYOND - SHORT_OF)
-    driver.roll(goal, LONG_SECONDS)
-    outcome = f"ended {STATUS_NAMES[goal.status]}" if goal.status in STATUS_NAMES else "did not end"
-    driver.abandon(goal)
-    prefix = f"With {GOAL} m to drive, the goal {outcome}"
-    expect(not is_early, f"{prefix} when the robot was only {SHORT_OF} m away from where it started.", fraction=0.75)
-    message = f"{prefix}, instead of SUCCEEDED, when the robot was {BEYOND} m away from where it started."
-    expect(goal.status == GoalStatus.STATUS_SUCCEEDED, message, fraction=0.75)
 
 
 def _describe(command: Twist) -> str:

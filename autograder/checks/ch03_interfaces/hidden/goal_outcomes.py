@@ -12,13 +12,8 @@ from hypothesis import strategies as st
 
 from autograder.checking import LOCKSTEP, REAL, Goal, ReceivedMessage, expect, group, hint
 from autograder.checking.drawn_cases import expect_each
-from autograder.checks.ch03_interfaces.hidden.action import (
-    LONG_SECONDS,
-    MOTION_CHECK,
-    SERVER_CHECK,
-    STATUS_NAMES,
-    drives_straight,
-)
+from autograder.checks.ch03_interfaces.hidden.action import MOTION_CHECK, SERVER_CHECK, drives_straight
+from autograder.checks.ch03_interfaces.hidden.arrival import LONG_SECONDS, STATUS_NAMES
 from autograder.checks.ch03_interfaces.support import contract
 from autograder.checks.ch03_interfaces.support.contract import MAX_REASON, PATIENCE
 from autograder.checks.ch03_interfaces.support.driver import COMMANDS, STEP, Driver, has_stopped

@@ -84,7 +84,7 @@ def test_masks_phantoms(workspace: Workspace, draw: random.Random) -> None:
 
 
 @check(points=1, covers="mask", after=("keeps_places",))
-@hint(RULE_MASK, "Both limits belong to the range: <=.")
+@hint(RULE_MASK, "The range includes both limits: <=.")
 def test_limits_count(workspace: Workspace, draw: random.Random) -> None:
     """A reading of exactly range_min or range_max is a measurement."""
 

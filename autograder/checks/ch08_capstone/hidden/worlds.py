@@ -107,7 +107,7 @@ def test_keeps_its_mind(drives: Drives, artifacts: Artifacts) -> None:
                 violation_time / result.seconds if turns else 0.0,
                 rules,
             )
-    expect(has_turned, "The robot never turned at an obstacle, neither in a room nor in a corridor with a bend.")
+    expect(has_turned, "The robot never turned at an obstacle, either in the room or in the corridor with the bend.")
 
 
 @check(points=3, covers=("drive", "more-room"), needs=("build",), after=("drives", "turns"))

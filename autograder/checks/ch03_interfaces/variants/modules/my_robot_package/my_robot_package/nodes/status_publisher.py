@@ -16,7 +16,7 @@ LATCHED = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, durability=Durabi
 
 @dataclass
 class Snapshot:
-    """The newest data of each sensor."""
+    """The latest data from each sensor."""
 
     level: int | None = None
     charging: bool = False
