@@ -32,7 +32,8 @@ _SOURCED = '[ ! -f "$0" ] || . "$0" || exit; eval "$1"'
 def shell(command: str, *, seconds: float = 600.0, workspace: str | Path = "ws") -> None:
     """Run a command to its end and print its output.
 
-    If the packages of a build contain unsolved exercises, the build is not run, and a message names the exercises.
+    If a file that a build reads, such as setup.py or a message, is still to be written, a message names it instead. An
+    unsolved node does not prevent a build.
 
     Args:
         command: as typed in a terminal, in the assignment's folder.

@@ -117,6 +117,8 @@ def expect_nodes(harness: LaunchHarness, expected: Collection[str]) -> None:
 def expect_parameters(harness: LaunchHarness, node: str, expected: Mapping[str, Value]) -> None:
     """Fail the check unless the node with this full name has these values, according to `parameters.same`.
 
+    It waits for the node's parameter services, but not for other nodes: `expect_nodes` does.
+
     If an exception ends a launch, the launch stops its nodes, and a node may still answer before it ends. That answer
     does not count.
     """

@@ -84,7 +84,7 @@ class NodeParameters:
         return {name: answer.descriptors[0] for name, answer in answers.items() if answer.descriptors}
 
     def change(self, values: Mapping[str, Value]) -> SetParametersReply:
-        """Ask the node to set parameters, all in one request."""
+        """Ask the node to set parameters in one request: its callback gets all of them in one list."""
         request = SetParametersAtomically.Request(
             parameters=[Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
         )

@@ -28,6 +28,7 @@ PACKAGES = {
     "08_capstone": ("robot_navigation_tutorial", "robot_navigation_interfaces"),
     "09_assessment": ("motor_guard", "motor_guard_interfaces"),
 }
+NIGHTLY = ("06_testing", "08_capstone")  # their complete gradings take the longest
 # Folders in these packages that students get with the chapter and do not change.
 GIVEN = {"06_testing": ("speed_guard",)}
 
@@ -44,7 +45,9 @@ def test_pkg_create_writes_the_files_of_the_record(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-@pytest.mark.parametrize("assignment", PACKAGES)
+@pytest.mark.parametrize(
+    "assignment", [pytest.param(name, marks=pytest.mark.nightly) if name in NIGHTLY else name for name in PACKAGES]
+)
 def test_no_check_deducts_a_point_for_a_file_that_pkg_create_wrote(
     assignment: str, workers: WorkerPool, tmp_path: Path
 ) -> None:

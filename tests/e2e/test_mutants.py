@@ -1,6 +1,7 @@
-"""The verification for each change, `autograder verify --quick`: references, releases, variants, a mutant for each check.
+"""The verification for each change: the cases of `autograder verify --quick`.
 
-`make nightly` runs the complete verification. Here it adds rewritten answers and some generated mutants.
+It grades every reference, release and variant, and one mutant for each check. `make nightly` adds rewritten answers,
+some generated mutants, and the complete verification.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from autograder.run.sandbox import Isolation
 from autograder.run.sandbox.process import ExitReason
 from autograder.run.sandbox.worker_sandbox import WorkerReport
 from autograder.suite import suites
+
 
 def named(test_cases: Iterable[Case], *marks: pytest.MarkDecorator) -> Iterator[ParameterSet]:
     """Yield each case as a parameter of a test, with an id."""

@@ -43,6 +43,8 @@ def autograder(course: Path, arguments: str) -> subprocess.CompletedProcess[str]
     "`autograder new chapter 10_mapping` creates a small, working chapter",
     "`autograder --course FOLDER VERB` selects the course for any verb.",
     "The new chapter is small but complete.",
+    "autograder course tables",
+    "autograder course check",
 )
 def test_a_new_chapter_passes_every_check_of_the_course(course: Path) -> None:
     check = autograder(course, "course check")
@@ -104,7 +106,9 @@ def test_verify_lists_the_generated_mutants_that_no_check_fails(course: Path, tm
     assert (count > 20, count - killed_count) == (True, len(survivors)), process.stdout
 
 
-@pytest.mark.promise("`--named` grades everything except the generated mutants.")
+@pytest.mark.promise(
+    "`--named` grades everything except the generated mutants.", "autograder verify --assignment 10_mapping"
+)
 @pytest.mark.slow
 def test_verify_can_leave_out_the_generated_mutants(course: Path) -> None:
     process = autograder(course, "verify --assignment 10_mapping --named -j 2")
@@ -128,6 +132,7 @@ def test_every_mutant_of_new_chapters_is_killed(course: Path) -> None:
     assert "0 without a reason" in process.stdout
 
 
+@pytest.mark.promise("autograder notebooks --source --released 10_mapping")
 def test_the_notebook_of_a_new_chapter_runs_as_source_and_as_released(course: Path) -> None:
     process = autograder(course, "notebooks --source --released -j 2 18_launch")
     assert process.returncode == 0, process.stdout + process.stderr
@@ -180,6 +185,8 @@ def test_the_package_and_the_node_of_a_new_chapter_have_the_given_names(course: 
     "`course check` takes a second, and reports all mistakes in a chapter",
     "`graded/ada/feedback.html` shows the check, your hint, and the requirement from the notebook.",
     "This command creates the student release, which has no hidden checks and no answers:",
+    "autograder course sync",
+    "autograder release 10_mapping --out ../release",
 )
 def test_every_command_of_the_tutorial_prints_what_the_page_says(tmp_path: Path) -> None:
     compare_with_page(DOCS / "first_check.md", tmp_path, 9)

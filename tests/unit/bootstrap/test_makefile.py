@@ -49,6 +49,13 @@ def test_ci_runs_lint_types_doctor_and_all_tests_but_the_nightly_ones() -> None:
         assert command in output, command
 
 
+@pytest.mark.promise("make check")
+def test_make_check_lints_the_checks_and_runs_the_quick_unit_tests() -> None:
+    output = make("-n", "check")
+    for command in ("lint-types", "lint-style", "pytest -n 2", 'tests/unit -m "not slow"'):
+        assert command in output, command
+
+
 @pytest.mark.promise("make lab")
 def test_make_lab_opens_jupyterlab_on_the_chapters() -> None:
     assert "bin/autograder ros jupyter lab --ServerApp.root_dir=chapters" in make("-n", "lab")

@@ -23,6 +23,8 @@ FailedChecks = Mapping[str, tuple[str, ...]]
 BEFORE: FailedChecks = {"alice": ("nan",), "bob": (), "carol": ("starts",), "dave": ("room",)}
 AFTER: FailedChecks = {"alice": (), "bob": (), "carol": ("node_name",), "dave": ("room",)}
 INSTANTS = 20
+EVERY_RUN = range(0, INSTANTS, 3)  # the others are nightly
+NIGHTLY = sorted({*range(INSTANTS)}.difference(EVERY_RUN))
 LIST = """
 Marks that changed because of the suite or the submission:
 alice (02_nodes): 51 -> 53
@@ -83,7 +85,9 @@ def listed(folder: Path) -> list[str]:
     "Each old result stays until the new one is complete.",
 )
 @pytest.mark.slow
-@pytest.mark.parametrize("instant", range(INSTANTS))
+@pytest.mark.parametrize(
+    "instant", [*EVERY_RUN, *(pytest.param(instant, marks=pytest.mark.nightly) for instant in NIGHTLY)]
+)
 def test_the_list_of_changes_is_whole_after_a_kill_at_any_instant(
     graded_class: Path, changes: int, instant: int, tmp_path: Path
 ) -> None:
