@@ -165,7 +165,7 @@ def test_status_name(tuned_reporter: Reporter, tuned_name: str) -> None:
 @hint("math.floor(percentage * 100.0 + 0.5) rounds halves up; int() would round down.")
 def test_status_battery(reporter: Reporter, draw: random.Random) -> None:
     """battery_level is the charge of the newest battery state in whole percent."""
-    for percentage in (0.0, 1.0, 0.854):
+    for percentage in (0.0, 1.0, 0.8549):
         _expect_level(reporter, percentage, before=draw.random())
     expect_each(
         PERCENTAGES,

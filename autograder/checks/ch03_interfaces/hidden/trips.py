@@ -56,8 +56,12 @@ def whole_percents(percentage: float) -> set[int]:
     return {math.floor(percent + 0.5 + error) for error in ((0.0,) if is_exact else (-1e-4, 1e-4))}
 
 
-# Multiples of 0.001, and half percents that float32 represents exactly.
-PERCENTAGES = st.integers(0, 1000).map(lambda number: number / 1000) | st.sampled_from((0.125, 0.375, 0.625, 0.875))
+# Multiples of 0.001, half percents that float32 represents exactly, and 0.01 percent below or above a half.
+PERCENTAGES = (
+    st.integers(0, 1000).map(lambda number: number / 1000)
+    | st.sampled_from((0.125, 0.375, 0.625, 0.875))
+    | st.builds(lambda level, excess: (level + excess) / 100.0, st.integers(0, 99), st.sampled_from((0.49, 0.51)))
+)
 INVALID_PERCENTAGES = st.sampled_from(
     (math.nan, math.inf, -math.inf, 1.00001, -0.00001, 1.004, -0.004, 1.5, -0.5, 85.0, 100.0)
 )
