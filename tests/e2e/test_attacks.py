@@ -31,9 +31,7 @@ from autograder.suite import suites
 DRIVES = frozenset(check.id for check in suites.hidden("02_nodes").checks if check.group == "worlds")
 STALLS = frozenset({"forged protocol"})  # each check waits 15 s for the messages that it claims and never sends
 # The same attacks as "slow in real time" and 02's "circling robot"; they take minutes on a busy machine.
-NIGHTLY = frozenset(
-    {"hasty in real time", "seldom in real time", "fixed in real time", "circling driver", "creeping driver"}
-)
+NIGHTLY = frozenset({"hasty in real time", "seldom in real time", "fixed in real time", "circling driver"})
 
 
 def _attacks() -> Iterator[object]:

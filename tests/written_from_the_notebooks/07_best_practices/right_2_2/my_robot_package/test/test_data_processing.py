@@ -24,7 +24,7 @@ LIMITS = {'range_min': 0.12, 'range_max': 3.5}
 
 @pytest.mark.parametrize('reading', [0.12, 1.0, 3.5, inf, -inf])
 def test_a_measurement_stays_as_it_is(reading):
-    """The range includes its limits, and both infinities are meaningful readings."""
+    """The limits belong to the range, and both infinities say something."""
     assert mask_invalid([reading], **LIMITS) == [reading]
 
 
