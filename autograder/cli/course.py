@@ -8,9 +8,9 @@ import click
 
 from autograder import course_paths
 from autograder.author.course.chapter_rules import read_chapter, require_checks
-from autograder.author.course.course_rules import course_file_findings, course_findings
+from autograder.author.course.course_rules import course_file_findings, course_findings, outdated_page
 from autograder.author.course.sync import chapters, sync_chapter
-from autograder.author.course.tables import course_page, titles
+from autograder.author.course.tables import COURSE_PAGE, course_page, titles
 from autograder.author.verification.checks_page import checks_page
 from autograder.cli.terminal import echo
 
@@ -49,6 +49,8 @@ def check(names: tuple[str, ...]) -> None:
         parsed_chapters = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
         problems = [finding for chapter in parsed_chapters.values() for finding in chapter.findings]
         problems += course_findings(parsed_chapters, whole=not names)
+        if not (names or problems):
+            problems += outdated_page()
     for line in dict.fromkeys(map(str, problems)):
         echo(line)
     sys.exit(1 if problems else 0)
@@ -62,8 +64,8 @@ def tables() -> None:
     for finding in problems:
         echo(str(finding))
     course = course_paths.course()
-    # The first page is generated, but in Git: a forge shows it to readers of `chapters/`. A test says if it is old.
-    pages = {course_paths.CHAPTERS / "README.md": page, course.root / course.guide: checks_page()}
+    # The first page is generated, but in Git: a forge shows it to readers of `chapters/`.
+    pages = {course_paths.CHAPTERS / COURSE_PAGE: page, course.root / course.guide: checks_page()}
     for path, text in {**titles(), **pages}.items():
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")

@@ -12,6 +12,7 @@ from autograder.author.course.chapter_rules import SUITE_KINDS, ParsedChapter, w
 from autograder.author.course.findings import Finding, display_path
 from autograder.author.course.syllabus import Syllabus, find_coverage
 from autograder.author.course.sync import Chapter
+from autograder.author.course.tables import COURSE_PAGE, course_page
 from autograder.author.course.yaml_files import read_yaml
 from sim import WorldError, load_world
 
@@ -32,6 +33,13 @@ def course_findings(parsed_chapters: Mapping[str, ParsedChapter], *, whole: bool
     """
     findings = list(_coverage_findings(parsed_chapters, whole))
     return [*_misnamed_folders(), *_worlds_findings(), *findings] if whole else findings
+
+
+def outdated_page() -> Iterator[Finding]:
+    """Yield a finding if the page about the chapters is out of date. The course must have no other problems."""
+    path = course_paths.CHAPTERS / COURSE_PAGE
+    if path.is_file() and path.read_text(encoding="utf-8") != course_page()[0]:
+        yield Finding(display_path(path), None, "is out of date: run `autograder course tables`", 1)
 
 
 def _misnamed_folders() -> Iterator[Finding]:

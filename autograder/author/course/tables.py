@@ -26,10 +26,11 @@ from autograder.author.course.workload import (
 )
 from autograder.suite import suites
 
+COURSE_PAGE = "README.md"  # in the folder of the chapters
 HEAD = """# The course, chapter by chapter
 
 One notebook an assignment; its folder is what students get. `autograder course tables` writes this page from the
-notebooks' metadata, the hidden checks and `{syllabus}`; a test holds it.
+notebooks' metadata, the hidden checks and `{syllabus}`.
 """
 
 

@@ -298,6 +298,15 @@ def test_slips_in_several_files_are_all_reported_at_once(course: Path, check: Ch
     assert check() == f"\n{END} 0"
 
 
+def test_a_page_about_the_chapters_that_is_out_of_date_is_reported(course: Path, check: CheckCourse) -> None:
+    revert = slip(course, "chapters/README.md", None, "# The course\n")
+    try:
+        output = check()
+    finally:
+        revert()
+    assert output == f"\nchapters/README.md:1: is out of date: run `autograder course tables`\n{END} 1"
+
+
 def test_sync_reports_what_is_wrong_with_a_suite_that_cannot_be_imported(course: Path) -> None:
     undo = slip(course, SUITE, '("readings",)', '("readings")')
     command = [sys.executable, "-m", "autograder", "--course", str(course), "course", "sync"]
