@@ -85,7 +85,7 @@ QUESTIONS = {
     ),
     "q5": Question(
         "client-library",
-        "A subscription that asks for more than is offered.",
+        "A subscription to scans with a queue of 10.",
         "b",
         {
             "a": "Nothing is sent twice to become reliable: the two ends do not match, and then exchange nothing.",
@@ -145,7 +145,7 @@ QUESTIONS = {
     ),
     "q10": Question(
         "build-and-test",
-        "A test that checks its result too early.",
+        "A test that fails although the node is correct.",
         "d",
         {
             "a": "pytest runs ROS nodes like any other Python code, as in the tests of 06_testing.",
@@ -157,7 +157,7 @@ QUESTIONS = {
     ),
     "q11": Question(
         "best-practices",
-        "A reading of a lidar that is not a measurement.",
+        "A reading of a lidar outside its limits.",
         "b",
         {
             "a": "A reading's place in the list is its bearing: all later readings would get a wrong bearing.",
@@ -169,7 +169,7 @@ QUESTIONS = {
     ),
     "q12": Question(
         "best-practices",
-        "An exception that is expected, and others that are not.",
+        "A sensor that raises an exception now and then.",
         "c",
         {
             "a": "A misspelt name also raises, and a node that looks alive would log it for ever.",
