@@ -8,7 +8,7 @@ import click
 
 from autograder import course_paths
 from autograder.author.course.chapter_rules import read_chapter, require_checks
-from autograder.author.course.course_rules import course_file_findings, course_findings, outdated_page
+from autograder.author.course.course_rules import course_file_findings, course_findings
 from autograder.author.course.sync import chapters, sync_chapter
 from autograder.author.course.tables import COURSE_PAGE, course_page, titles
 from autograder.author.verification.checks_page import checks_page
@@ -49,8 +49,6 @@ def check(names: tuple[str, ...]) -> None:
         parsed_chapters = {chapter.assignment: read_chapter(chapter) for chapter in chapters(names)}
         problems = [finding for chapter in parsed_chapters.values() for finding in chapter.findings]
         problems += course_findings(parsed_chapters, whole=not names)
-        if not (names or problems):
-            problems += outdated_page()
     for line in dict.fromkeys(map(str, problems)):
         echo(line)
     sys.exit(1 if problems else 0)

@@ -19,7 +19,7 @@ from autograder.author.course.cells import is_graded, metadata_findings
 from autograder.author.course.contract_rules import cells_findings, coverage_findings
 from autograder.author.course.copy_rules import target_findings
 from autograder.author.course.exceptions import CourseError
-from autograder.author.course.findings import Finding, display_path
+from autograder.author.course.findings import Finding, display_path, outdated_file
 from autograder.author.course.import_rules import imports_findings
 from autograder.author.course.mutant_rules import mutants_findings, unknown_records, unproven_checks
 from autograder.author.course.notebook_rules import rules_findings
@@ -141,9 +141,7 @@ def require_checks(assignments: Iterable[str]) -> None:
 
 def _outdated_titles(assignment: str) -> Iterator[Finding]:
     """Yield a finding if the titles of the hidden checks, which are shown to students, are out of date."""
-    path = course_paths.hidden_titles(assignment)
-    if not path.is_file() or path.read_text(encoding="utf-8") != titles_of(assignment):
-        yield Finding(display_path(path), None, "is out of date: run `autograder course tables`", 1)
+    yield from outdated_file(course_paths.hidden_titles(assignment), titles_of(assignment))
 
 
 def _import_error(error: Exception, folder: Path) -> Finding:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from autograder import course_paths
 from autograder.author.course.chapter_rules import SUITE_KINDS, ParsedChapter, with_line
-from autograder.author.course.findings import Finding, display_path
+from autograder.author.course.findings import Finding, display_path, outdated_file
 from autograder.author.course.syllabus import Syllabus, find_coverage
 from autograder.author.course.sync import Chapter
 from autograder.author.course.tables import COURSE_PAGE, course_page
@@ -32,14 +32,18 @@ def course_findings(parsed_chapters: Mapping[str, ParsedChapter], *, whole: bool
         whole: whether these are all chapters of the course. If not, rules that need all chapters are skipped.
     """
     findings = list(_coverage_findings(parsed_chapters, whole))
-    return [*_misnamed_folders(), *_worlds_findings(), *findings] if whole else findings
+    if not whole:
+        return findings
+    findings = [*_misnamed_folders(), *_worlds_findings(), *findings]
+    is_valid = not (findings or any(chapter.findings for chapter in parsed_chapters.values()))
+    return list(_outdated_page()) if is_valid else findings
 
 
-def outdated_page() -> Iterator[Finding]:
-    """Yield a finding if the page about the chapters is out of date. The course must have no other problems."""
+def _outdated_page() -> Iterator[Finding]:
+    """Yield a finding if the page about the chapters is out of date. A new course does not have it yet."""
     path = course_paths.CHAPTERS / COURSE_PAGE
-    if path.is_file() and path.read_text(encoding="utf-8") != course_page()[0]:
-        yield Finding(display_path(path), None, "is out of date: run `autograder course tables`", 1)
+    if path.is_file():
+        yield from outdated_file(path, course_page()[0])
 
 
 def _misnamed_folders() -> Iterator[Finding]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,6 +35,12 @@ def display_path(path: Path) -> str:
     """Return a path as findings show it: relative to the course's folder if it is inside that folder."""
     root = course_paths.course().root
     return str(path.relative_to(root) if path.is_relative_to(root) else path)
+
+
+def outdated_file(path: Path, text: str) -> Iterator[Finding]:
+    """Yield a finding unless the file that `autograder course tables` writes exists and has this text."""
+    if not path.is_file() or path.read_text(encoding="utf-8") != text:
+        yield Finding(display_path(path), None, "is out of date: run `autograder course tables`", 1)
 
 
 # A finding, and a function that fixes it in place (None if the author has to fix it).
