@@ -104,7 +104,10 @@ class Running:
         return cls(call, folder, pid, time.monotonic() + TIMEOUT)
 
     def poll(self) -> dict[str, Any] | None:
-        """Return the record of a command, or None if it has not ended; send SIGINT once it has printed `until`."""
+        """Return the record of a command, or None if it has not ended.
+
+        A command gets SIGINT once it has printed `until`, and SIGKILL at its deadline.
+        """
         pid, status = os.waitpid(self.pid, os.WNOHANG)
         if not pid:
             if not self.is_interrupted and (until := self.call.get("until")) and until in self._text("out"):
@@ -112,8 +115,8 @@ class Running:
                 os.killpg(self.pid, signal.SIGINT)
             if time.monotonic() < self.deadline:
                 return None
-            os.killpg(self.pid, signal.SIGKILL)
-            raise TimeoutError(f"ros2 {self.call['command']} did not end: {self._text('out')} {self._text('err')}")
+            os.killpg(self.pid, signal.SIGKILL)  # its record has the status -9 and the output until now
+            _, status = os.waitpid(self.pid, 0)
         record = {name: self.call[name] for name in COMMAND_FIELDS if name in self.call}
         record |= {"status": os.waitstatus_to_exitcode(status), "output": self._text("out")}
         if "lines" in self.call:

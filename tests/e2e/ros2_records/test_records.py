@@ -31,7 +31,10 @@ def records() -> dict[str, list[dict[str, Any]]]:
     program = [sys.executable, "-m", "tests.e2e.ros2_records.runner"]
     with Domain() as domain:
         variables = {**os.environ, "ROS_DOMAIN_ID": str(domain.number)}
-        process = subprocess.run(program, cwd=ROOT, env=variables, stdout=subprocess.PIPE, text=True, check=True)
+        process = subprocess.run(program, cwd=ROOT, env=variables, capture_output=True, text=True, check=False)
+    if process.returncode:
+        # Pytest's summary shows the first line of this message.
+        pytest.fail(f"the runner failed: {(process.stderr.splitlines() or ['no output'])[-1]}\n{process.stderr}")
     recorded: dict[str, list[dict[str, Any]]] = yaml.safe_load(process.stdout)
     return recorded
 
