@@ -64,6 +64,7 @@ nightly:        ## tests that take hours: each chapter's class and tour, hundred
 LINTED := autograder sim tests assets docs nbgrader_config.py
 STANDINS := launch launch_xml launch_yaml launch_ros launch_testing launch_pytest rosidl_runtime_py ament_copyright standin_notice standin_submodules
 lint:           ## check style, types and imports in parallel
+	@$(BOOTSTRAP) --dev
 	@$(SIDE_BY_SIDE) $(LINTERS)
 
 lint-style:

@@ -1,6 +1,6 @@
 """Reads the answers in `written_from_the_notebooks/`, by people who had read only the notebooks.
 
-For each chapter, a YAML file lists the answers. A right answer replaces files of the reference with those in its
+The YAML file of a chapter lists the answers. A right answer replaces files of the reference with those in its
 folder, and removes others. A wrong answer is the reference with one mistake that violates one sentence of the notebook.
 `keeps_marks` says why a wrong answer loses no points.
 """
@@ -19,6 +19,7 @@ from autograder.author.verification.mutants import write_reference
 from autograder.suite import suites
 
 FOLDER = Path(__file__).with_name("written_from_the_notebooks")
+ASSIGNMENTS = sorted(path.stem for path in FOLDER.glob("*.yaml"))  # a new chapter has none yet
 
 
 @dataclass(frozen=True)

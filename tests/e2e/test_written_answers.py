@@ -13,11 +13,9 @@ from autograder.author.verification.verify_cases import verify_cases
 from autograder.author.verification.worker_pool import WorkerPool
 from autograder.result.model import Result
 from autograder.run.sandbox import Isolation
-from autograder.suite import suites
-from tests.written_answers import right_answers, wrong_answers
+from tests.written_answers import ASSIGNMENTS, right_answers, wrong_answers
 
 pytestmark = [pytest.mark.slow, pytest.mark.nightly, pytest.mark.timeout(3600)]
-ASSIGNMENTS = suites.graded_assignments()
 
 
 @pytest.fixture(scope="session")

@@ -8,10 +8,7 @@ from pathlib import Path
 import pytest
 
 from autograder import course_paths
-from autograder.suite import suites
-from tests.written_answers import FOLDER, right_answers, wrong_answers
-
-ASSIGNMENTS = suites.graded_assignments()
+from tests.written_answers import ASSIGNMENTS, FOLDER, right_answers, wrong_answers
 
 
 def _words(text: str) -> str:
