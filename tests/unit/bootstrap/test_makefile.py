@@ -17,8 +17,9 @@ STUDENTS = ROOT / "assets" / "students" / "Makefile"
 
 
 def make(*arguments: str, path: str | None = None, **environ: str) -> str:
-    """Run make in the project and return its output."""
-    clean = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "PYTHON"))}
+    """Run make in the project, without the variables of a make around the tests, and return its output."""
+    outer = ("MAKE", "MFLAGS", "PYTHON", "WORKERS", "PYTEST_ARGS")
+    clean = {name: value for name, value in os.environ.items() if not name.startswith(outer)}
     completed = subprocess.run(
         [shutil.which("make") or "make", *arguments],
         cwd=ROOT,
