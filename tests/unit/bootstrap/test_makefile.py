@@ -57,6 +57,14 @@ def test_make_check_lints_the_checks_and_runs_the_quick_unit_tests() -> None:
         assert command in output, command
 
 
+@pytest.mark.promise("make lint")
+def test_make_lint_installs_its_tools_and_runs_the_linters() -> None:
+    output = make("-n", "lint")
+    assert re.search(r"autograder/bootstrap\.py.* --dev", output)
+    for command in ("lint-types", "lint-standins", "lint-style", "lint-imports"):
+        assert command in output, command
+
+
 @pytest.mark.promise("make lab")
 def test_make_lab_opens_jupyterlab_on_the_chapters() -> None:
     assert "bin/autograder ros jupyter lab --ServerApp.root_dir=chapters" in make("-n", "lab")

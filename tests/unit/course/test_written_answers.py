@@ -15,6 +15,10 @@ def _words(text: str) -> str:
     return " ".join(text.split())
 
 
+def test_each_chapter_of_the_textbook_has_written_answers() -> None:
+    assert {f"{number:02}" for number in range(1, 10)} <= {assignment[:2] for assignment in ASSIGNMENTS}
+
+
 @pytest.mark.parametrize("assignment", ASSIGNMENTS)
 def test_each_wrong_answer_differs_from_the_reference_and_quotes_the_notebook(assignment: str, tmp_path: Path) -> None:
     notebook = course_paths.CHAPTERS / assignment / f"{assignment}.ipynb"

@@ -109,6 +109,7 @@ def test_every_hidden_suite_has_visible_checks_and_keeps_the_contract() -> None:
     assert "02_nodes" in suites.graded_assignments()
     for name in suites.graded_assignments():
         loaded = suites.hidden(name)
+        assert len(loaded.checks) >= 15 or name >= "10", name  # the textbook's chapters are 01 to 09
         assert all(check.hints for check in loaded.checks)
         assert suites.visible(name).packages == loaded.packages
 
