@@ -38,10 +38,10 @@ def action() -> Figure:
         ax.plot([x, x], [0.3, -7.3], color=LIGHT.muted, lw=1.2)
     messages = (
         (0.0, "goal: drive 2 m", True, LIGHT.robot),
-        (-0.9, "accepted (or rejected, and all is over)", False, LIGHT.robot),
+        (-0.9, "accepted (or rejected: the end)", False, LIGHT.robot),
         (-2.2, "feedback: 0.4 m driven", False, LIGHT.muted),
         (-3.1, "feedback: 0.8 m driven", False, LIGHT.muted),
-        (-4.3, "cancel, please", True, LIGHT.hit),
+        (-4.3, "cancel request", True, LIGHT.hit),
         (-5.2, "cancel accepted", False, LIGHT.hit),
         (-6.6, "status CANCELED, and the result: 0.9 m", False, LIGHT.robot),
     )

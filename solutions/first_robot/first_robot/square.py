@@ -32,8 +32,9 @@ def command_at(seconds):
     """
     Return (linear, angular): what the robot does this many seconds after its start.
 
-    SIDE_SECONDS straight on at SPEED, then TURN_SECONDS on the spot at TURN_RATE, and so on
-    for ever. At exactly SIDE_SECONDS, it already turns. linear is in m/s, angular in rad/s.
+    The robot drives straight on at SPEED for SIDE_SECONDS, then turns on the spot at TURN_RATE
+    for TURN_SECONDS, and repeats this for ever. At exactly SIDE_SECONDS, it already turns.
+    linear is in m/s, angular in rad/s.
     """
     within = seconds % (SIDE_SECONDS + TURN_SECONDS)
     if within < SIDE_SECONDS:

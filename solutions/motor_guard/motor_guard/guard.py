@@ -34,7 +34,7 @@ class Guard(Node):
         """
         Name the node guard; declare its parameters, create its topics. The fan is off.
 
-        hot: 60.0 degrees Celsius. cool: 50.0 degrees. kwargs are handed on to Node. Raise
+        hot: 60.0 degrees Celsius. cool: 50.0 degrees. kwargs are passed on to Node. Raise
         an error, such as ValueError, unless cool is less than hot: without a gap, the fan
         would switch all the time.
         """
@@ -51,8 +51,8 @@ class Guard(Node):
         """
         Decide, and publish the decision with the stamp and the temperature of the average.
 
-        At hot or more the fan runs, at cool or less it does not; between the two it does
-        what it did before. A temperature that is not finite is unknown, and the fan runs.
+        At hot or more the fan runs, at cool or less it does not; between the two it stays
+        as it was. A temperature that is not finite is unknown, and the fan runs.
         """
         if not math.isfinite(average.celsius) or average.celsius >= self.hot:
             self.cooling = True

@@ -35,8 +35,8 @@ class Smoother(Node):
         """
         Name the node smoother; declare its parameter, create its topics.
 
-        window: 5 readings at most in an average, an integer from 1 to 100. kwargs are handed
-        on to Node.
+        window: the number of readings in an average, an integer from 1 to 100, by default 5.
+        kwargs are passed on to Node.
         """
         super().__init__('smoother', **kwargs)
         window = self.declare_parameter('window', 5, ParameterDescriptor(
@@ -50,7 +50,8 @@ class Smoother(Node):
         """
         Publish the mean of the newest readings, with the stamp of the newest one.
 
-        A reading that is not finite counts for nothing, and nothing is published for it.
+        A reading that is not finite is ignored: it is not put into the window, and nothing
+        is published for it.
         """
         if not math.isfinite(reading.celsius):
             return

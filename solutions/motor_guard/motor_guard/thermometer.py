@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node that measures: a simulated thermometer on a motor that warms and cools by turns."""
+"""The node that measures: a simulated thermometer on a motor that warms up and cools down."""
 
 import math
 
@@ -32,7 +32,7 @@ class Thermometer(Node):
         Name the node thermometer; declare its parameters, create publisher and timer.
 
         period: 0.5 s between two readings. mean: 50.0 degrees Celsius. swing: 20.0 degrees.
-        kwargs are handed on to Node.
+        kwargs are passed on to Node.
         """
         super().__init__('thermometer', **kwargs)
         period = self.declare_parameter('period', 0.5).value

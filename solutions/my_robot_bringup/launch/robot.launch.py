@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Bring one robot up: its driver and, unless it is to be quiet, its reporter."""
+"""Bring up one robot: its driver and, if the argument report is true, its reporter."""
 
 from pathlib import Path
 

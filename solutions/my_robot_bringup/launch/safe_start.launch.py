@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Let the robot drive once its self-test has passed, and end everything with its driver."""
+"""Start the driver after the self-test has passed, and shut down when the driver ends."""
 
 from launch import LaunchDescription
 from launch.actions import (
@@ -47,7 +47,7 @@ def generate_launch_description():
         package='my_robot_bringup', executable='driver', name='driver', output='screen')
 
     def after_self_test(event, context):
-        """Return what is to be done now that the self-test has ended."""
+        """Return the actions that follow the self-test."""
         if event.returncode == 0:
             return [driver]
         return [Shutdown(reason='the self-test failed')]

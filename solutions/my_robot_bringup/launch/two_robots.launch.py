@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Bring two robots up from one file: each in a namespace of its own, with one status for both."""
+"""Bring up two robots, each in a namespace of its own, with one status topic for both."""
 
 from pathlib import Path
 

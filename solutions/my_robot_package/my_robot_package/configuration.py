@@ -19,7 +19,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 
 def contradiction(safety_distance, slow_distance):
     """
-    Return why two distances (m) do not fit together, or '' when they do.
+    Return a sentence that says why two distances (m) do not fit, or '' if they fit.
 
     The safety distance must be below the slow distance. The sentence contains the names and the
     values of both parameters.
@@ -42,8 +42,8 @@ def declare_configuration(node):
     control_frequency    double    10.0 Hz          1.0 to 50.0
     battery_threshold    integer   20 percent       0 to 100
 
-    Raise ValueError, with the sentence of contradiction, when the node would start with
-    distances that do not fit together.
+    Raise ValueError, with the sentence that contradiction() returns, if the node would
+    start with distances that do not fit together.
     """
     node.declare_parameter(
         'robot_name', 'DefaultRobot',

@@ -42,7 +42,7 @@ class NavigationController(Node):
 
         forward_speed: 0.3 m/s, from 0.05 to 0.5. turn_speed: 0.8 rad/s, from 0.1 to 1.5.
         safety_distance: 0.6 m, from 0.3 to 2.0. data_timeout: 0.5 s, from 0.2 to 2.0.
-        Queues of 10; a timer calls control every CONTROL_PERIOD. kwargs go on to Node.
+        Queues of 10; a timer calls control every CONTROL_PERIOD. kwargs are passed on to Node.
         """
         super().__init__('navigation_controller', **kwargs)
         declare(self, 'forward_speed', 0.3, 0.05, 0.5, 'm/s, where the way is clear')

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters that know their limits."""
+"""Numeric parameters with a range."""
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 
@@ -21,8 +21,8 @@ def declare(node, name, default, lowest, highest, description):
     """
     Declare a numeric parameter of a node, with a description and a range.
 
-    rclpy refuses a value of another type, and one outside lowest to highest, at the start
-    and later. The node calls get_parameter(name).value whenever it needs the number, so a
+    rclpy rejects a value of another type, and a value below lowest or above highest, at the
+    start and later. The node calls get_parameter(name).value whenever it needs the number, so a
     change takes effect immediately.
     """
     bounds = FloatingPointRange(from_value=lowest, to_value=highest)

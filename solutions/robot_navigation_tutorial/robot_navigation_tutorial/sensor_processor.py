@@ -39,7 +39,7 @@ class SensorProcessor(Node):
         Name the node sensor_processor; declare its parameter, create its topics.
 
         half_angle: 0.52 rad, from 0.1 to 0.78. scan: qos_profile_sensor_data.
-        clearance: a queue of 10. kwargs are handed on to Node.
+        clearance: a queue of 10. kwargs are passed on to Node.
         """
         super().__init__('sensor_processor', **kwargs)
         declare(self, 'half_angle', 0.52, 0.1, 0.78,

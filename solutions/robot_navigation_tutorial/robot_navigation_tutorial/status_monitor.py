@@ -44,7 +44,7 @@ class StatusMonitor(Node):
 
         silence_timeout: 1.0 s, from 0.2 to 1.4. scan: qos_profile_sensor_data. clearance and
         cmd_vel: queues of 10. health: HEALTH_QOS. A timer calls report every REPORT_PERIOD.
-        kwargs are handed on to Node.
+        kwargs are passed on to Node.
         """
         super().__init__('status_monitor', **kwargs)
         declare(self, 'silence_timeout', 1.0, 0.2, 1.4, 's: no message for so long is silence')
@@ -67,7 +67,7 @@ class StatusMonitor(Node):
         self.sees = clearance.valid
 
     def report(self):
-        """Publish the health of this moment."""
+        """Publish the current health."""
         now = self.get_clock().now()
         timeout = Duration(seconds=self.get_parameter('silence_timeout').value)
         health = Health(silent=[

@@ -51,7 +51,7 @@ def test_a_thing_is_in_the_sector_of_its_bearing(angle_min, degrees, sector):
     (NAN, 3.0), (INF, 3.0), (-INF, -INF), (0.0, 3.0), (0.05, 3.0), (12.0, 3.0), (0.25, 0.25),
 ])
 def test_a_reading_counts_by_rep_117(reading, expected):
-    """One odd reading beside a wall 3 m away, before it and behind it."""
+    """One odd reading next to a wall 3 m away, before and after it in the list."""
     assert nearest(scan({0: reading, 5: 3.0}), FRONT, HALF) == expected
     assert nearest(scan({0: 3.0, 5: reading}), FRONT, HALF) == expected
 

@@ -30,8 +30,8 @@ def safe_speed(wanted, distance, stop_distance=0.5, slow_distance=1.5):
     distance is None or nan                   0.0
     distance <= stop_distance                 0.0
     distance >= slow_distance                 wanted
-    otherwise                                 grows in a straight line, from 0.0 at
-                                              stop_distance to wanted at slow_distance
+    otherwise                                 grows linearly, from 0.0 at stop_distance
+                                              to wanted at slow_distance
     """
     if not 0.0 <= stop_distance < slow_distance:
         raise ValueError(

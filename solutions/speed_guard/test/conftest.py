@@ -31,16 +31,16 @@ DEADLINE = 5.0  # s: only a broken node makes a test wait so long
 
 
 class Robot(Node):
-    """A planner, a distance sensor, and motors that remember: all that is around a guard."""
+    """The robot around the guard: planner, distance sensor, and motors that record commands."""
 
     def __init__(self, context):
         """Create an endpoint for each of the guard's topics, and the executor of the test."""
         super().__init__('robot', context=context)
         self.sensor = self.create_publisher(Range, 'distance', qos_profile_sensor_data)
         self.planner = self.create_publisher(Twist, 'cmd_vel_raw', 10)
-        self.seen = []  # what has come on distance
-        self.commands = []  # what has come on cmd_vel
-        self.number = 0.0  # of the newest question
+        self.seen = []  # messages received on distance
+        self.commands = []  # messages received on cmd_vel
+        self.number = 0.0  # the number of the newest command from ask()
         self.create_subscription(Range, 'distance', self.seen.append, qos_profile_sensor_data)
         self.create_subscription(Twist, 'cmd_vel', self.commands.append, 10)
         self.nodes = [self]
@@ -48,12 +48,12 @@ class Robot(Node):
         self.test_executor.add_node(self)
 
     def add(self, node):
-        """Let another node of this process take part in the test; it ends with the robot."""
+        """Add another node of this process to the test; leave() destroys this node, too."""
         self.nodes.append(node)
         self.test_executor.add_node(node)
 
     def meet(self, seconds=DEADLINE):
-        """Wait, so many seconds at most, until a guard is at the other end of all topics."""
+        """Wait for at most `seconds` until a guard is connected to all topics."""
         self.until(lambda: self.sensor.get_subscription_count() > 1
                    and self.planner.get_subscription_count() > 0
                    and self.count_publishers('cmd_vel') > 0, seconds)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the node speed_guard promises, asked over its topics."""
+"""Tests of the node speed_guard, through its topics."""
 
 from geometry_msgs.msg import Twist
 import pytest
@@ -20,13 +20,13 @@ from rclpy.parameter import Parameter
 from speed_guard.guard import SpeedGuard
 
 PATIENT = 60.0  # s: nothing becomes old while a test runs
-# With HASTY, even a new distance may be old: the computer may be busy.
+# With HASTY, a distance may be too old when the command arrives: the computer may be busy.
 HASTY = 0.1  # s
 
 
 @pytest.fixture
 def guard(robot):
-    """Return a function that starts a guard with parameters, for the robot to meet."""
+    """Return a function that starts a guard with parameters and waits until it is connected."""
     def start(**parameters):
         overrides = [Parameter(name, value=value) for name, value in parameters.items()]
         node = SpeedGuard(context=robot.context, parameter_overrides=overrides)
@@ -43,7 +43,7 @@ def test_it_is_called_speed_guard(robot, guard):
 
 
 def test_before_the_first_distance_it_stands(robot, guard):
-    """Without a distance it does not go forward; the way back is free all the same."""
+    """Without a distance, a forward speed becomes 0.0; a backward speed stays as it is."""
     guard(timeout=PATIENT)
     assert robot.ask(0.8).linear.x == 0.0
     assert robot.ask(-0.3).linear.x == -0.3
@@ -58,7 +58,7 @@ def test_the_newest_distance_counts(robot, guard):
 
 
 def test_a_turn_stays_as_it_is(robot, guard):
-    """Only linear.x is changed: all other fields stay, on a clear way and where it brakes."""
+    """Only linear.x may change; all other fields stay as they are, whether it brakes or not."""
     guard(timeout=PATIENT)
     for distance, speed in ((4.0, 0.8), (0.2, 0.0)):
         robot.see(distance)
@@ -77,7 +77,7 @@ def test_each_command_has_one_answer(robot, guard):
 
 
 def test_its_distances_are_parameters(robot, guard):
-    """stop_distance and slow_distance move both ends of the line."""
+    """stop_distance and slow_distance set the range in which the robot slows down."""
     guard(timeout=PATIENT, stop_distance=1.0, slow_distance=3.0)
     for distance, speed in ((0.9, 0.0), (2.0, 0.4), (3.5, 0.8)):
         robot.see(distance)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What safe_speed promises, line by line of its contract."""
+"""Tests of safe_speed: one for each line of its contract."""
 
 import math
 
@@ -22,30 +22,30 @@ from speed_guard.limits import safe_speed
 
 @pytest.mark.parametrize('distance', [-math.inf, 0.0, 0.3, 0.5])
 def test_near_things_stop_it(distance):
-    """At stop_distance and nearer it stands still."""
+    """At stop_distance or nearer, a forward speed becomes 0.0."""
     assert safe_speed(0.8, distance) == 0.0
 
 
 def test_in_between_it_slows_down():
-    """From stop_distance to slow_distance the speed grows in a straight line."""
+    """From stop_distance to slow_distance, the speed grows linearly from 0 to the wanted speed."""
     assert safe_speed(0.8, 0.75) == pytest.approx(0.2)
     assert safe_speed(0.8, 1.0) == pytest.approx(0.4)
     assert safe_speed(0.8, 1.25) == pytest.approx(0.6)
 
 
 def test_far_things_do_not_matter():
-    """At slow_distance and farther it goes as fast as it was asked to, never faster."""
+    """At slow_distance or farther, the robot drives at the wanted speed, never faster."""
     assert safe_speed(0.8, 1.5) == pytest.approx(0.8)
     assert safe_speed(0.8, 4.0) == pytest.approx(0.8)
 
 
 def test_nothing_ahead_is_far_away():
-    """A distance of inf is a clear way."""
+    """A distance of inf means that the way is clear."""
     assert safe_speed(0.8, math.inf) == pytest.approx(0.8)
 
 
 def test_an_unknown_distance_is_not_a_clear_way():
-    """Neither None nor nan lets it move."""
+    """With None or nan as the distance, a forward speed becomes 0.0."""
     assert safe_speed(0.8, None) == 0.0
     assert safe_speed(0.8, math.nan) == 0.0
 
@@ -58,14 +58,14 @@ def test_the_way_back_is_not_guarded():
 
 
 def test_the_two_distances_can_be_chosen():
-    """Other distances move both ends of the line."""
+    """stop_distance and slow_distance set the range in which the robot slows down."""
     assert safe_speed(1.0, 2.0, stop_distance=1.0, slow_distance=3.0) == pytest.approx(0.5)
     assert safe_speed(1.0, 0.9, stop_distance=1.0, slow_distance=3.0) == 0.0
     assert safe_speed(1.0, 0.2, stop_distance=0.0, slow_distance=0.4) == pytest.approx(0.5)
 
 
 def test_distances_that_make_no_sense_are_refused():
-    """It raises ValueError unless 0 <= stop_distance < slow_distance, whatever is wanted."""
+    """For every wanted speed, ValueError is raised unless 0 <= stop_distance < slow_distance."""
     for stop, slow in ((-0.1, 1.0), (1.0, 1.0), (2.0, 1.0)):
         for wanted in (0.8, -0.8):
             with pytest.raises(ValueError):

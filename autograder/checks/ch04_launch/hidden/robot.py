@@ -59,7 +59,7 @@ def test_starts(workspace: Workspace, launches: Launches) -> None:
 
 
 @check(points=1, covers=("argument-wins", "robot-name", "speed", "screen"), after=("starts",))
-@hint("The arguments' defaults are robot1 and 0.2, and they win over the file.", TYPE_HINT)
+@hint("The arguments' defaults are robot1 and 0.2, and they override the file.", TYPE_HINT)
 @hint("output='screen' is an argument of each Node.")
 def test_defaults(launches: Launches) -> None:
     """Without arguments, robot_name is robot1 and speed is 0.2, whatever the file says; both nodes are on screen."""
@@ -72,7 +72,7 @@ def test_defaults(launches: Launches) -> None:
 
 @check(points=2, covers=("file", "driver", "reporter"), after=("starts",), doc=contract.LARGE)
 @hint("config is the path of config/robot.yaml below get_package_share_directory('my_robot_bringup').")
-@hint("parameters=[config, {...}] is a list: first the file, then the values that win over it.")
+@hint("parameters=[config, {...}] is a list: first the file, then the values that override it.")
 def test_parameters_file(launches: Launches, inputs: Inputs) -> None:
     """Both nodes get the parameters of config/robot.yaml."""
     driver, reporter = _driver_and_reporter(launches.robot())

@@ -71,7 +71,7 @@ def test_any_robot(start_values: Values) -> None:
 
 
 @check(points=2, covers=(*contract.FLEET_ROWS, "empty-field"), after=("file_names", "any_robot"))
-@hint("Of all entries that fit a node, the last one wins: write /** first.")
+@hint("Of all entries that match a node, the last one wins: write /** first.")
 @hint("The key is the node's name, scout; its values are under its own ros__parameters.")
 def test_scout(start_values: Values) -> None:
     """The robot scout gets its own values, and otherwise the values for every robot."""
@@ -79,7 +79,7 @@ def test_scout(start_values: Values) -> None:
 
 
 @check(points=2, covers=(*contract.FLEET_ROWS, "empty-field"), after=("file_names", "any_robot"))
-@hint("Of all entries that fit a node, the last one wins: write /** first.")
+@hint("Of all entries that match a node, the last one wins: write /** first.")
 @hint("20.0 and 1.0 are doubles. With 20 or 1, the node would not start.")
 def test_porter(start_values: Values) -> None:
     """The robot porter gets its own values, and otherwise the values for every robot."""

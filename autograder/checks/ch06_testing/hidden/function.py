@@ -43,7 +43,7 @@ LINES = (
         id="slow",
         covers=("slow", "function-lines"),
         title="A test fails when the speed between the two distances does not grow in a straight line.",
-        promise="between the two distances the speed grows in a straight line.",
+        promise="between the two distances, the speed grows linearly.",
         points=2,
         hints=(
             "One point between the two distances shows that it slows down; two show that the line is straight.",
@@ -67,7 +67,7 @@ LINES = (
         id="infinity",
         covers=("infinity", "function-lines"),
         title='A test fails when "nothing ahead" does not count as a clear way.',
-        promise="a distance of inf is a clear way.",
+        promise="a distance of inf means that the way is clear.",
         points=1,
         hints=(
             "A sensor that sees nothing reports inf.",
@@ -114,7 +114,7 @@ LINES = (
         id="refused",
         covers=("refused", "function-lines"),
         title="A test fails when distances that make no sense are accepted.",
-        promise="it raises ValueError unless 0 <= stop_distance < slow_distance, whatever is wanted.",
+        promise="for every wanted speed, ValueError is raised unless 0 <= stop_distance < slow_distance.",
         points=2,
         hints=(
             "with pytest.raises(ValueError): ...",

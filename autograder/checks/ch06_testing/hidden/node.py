@@ -71,7 +71,7 @@ LINES = (
         id="first_distance",
         covers=("first-distance", "node-lines"),
         title="A test fails when, before the first distance arrives, the robot drives forward or cannot drive back.",
-        promise="before the first distance arrives, the distance is not known, and the way back is free all the same.",
+        promise="without a distance, a forward speed becomes 0.0; a backward speed stays as it is.",
         points=1,
         hints=(
             "Ask before the sensor publishes any distance, for a speed ahead and for one back.",

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Drive up to an obstacle ahead, and stop in front of it, by parameters that can change."""
+"""Drive up to an obstacle and stop in front of it; the parameters can change meanwhile."""
 
 from geometry_msgs.msg import Twist
 from rcl_interfaces.msg import SetParametersResult
@@ -36,7 +36,7 @@ class ConfiguredNode(Node):
     """
 
     def __init__(self, **kwargs):
-        """Declare the parameters, create the endpoints, and listen to changes."""
+        """Declare the parameters, create the endpoints, and listen for changes."""
         super().__init__('configured_node', **kwargs)
         declare_configuration(self)
         self.distance = None  # m straight ahead; None while the robot is blind
@@ -74,7 +74,7 @@ class ConfiguredNode(Node):
 
     def apply(self, parameters):
         """
-        Give self.timer the period of a new control_frequency: timer_period_ns, in whole ns.
+        Set self.timer.timer_period_ns, in whole ns, if control_frequency has changed.
 
         parameters: those that have just changed. The others need nothing: speed asks for
         their values each time.
@@ -93,7 +93,7 @@ class ConfiguredNode(Node):
         self.distance = None
 
     def battery_callback(self, battery):
-        """Remember the charge; a driver says 0.0 to 1.0, or nan when it does not know."""
+        """Remember the charge; the message has 0.0 to 1.0, or nan if the charge is unknown."""
         self.charge = battery.percentage * 100.0
 
     def control_loop(self):
@@ -106,7 +106,7 @@ class ConfiguredNode(Node):
         """
         Return the forward speed in m/s.
 
-        Full speed from slow_distance on, falling evenly to 0 at safety_distance.
+        Full speed at slow_distance and beyond, falling evenly to 0 at safety_distance.
         It is 0 without a reading (nan fails each comparison), or with a battery below its
         threshold.
         """

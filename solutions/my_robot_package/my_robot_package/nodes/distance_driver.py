@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Drive the robot straight on by a distance: an action with feedback that can be cancelled."""
+"""Serve an action that drives straight on for a given distance and can be cancelled."""
 
 import math
 import threading
@@ -46,7 +46,7 @@ class DistanceDriver(Node):
         Name the node distance_driver; create its publisher, subscription and action server.
 
         cmd_vel and odom: a queue of 10. The action server's callbacks are in a
-        ReentrantCallbackGroup, so that they may run at the same time. kwargs are handed on to
+        ReentrantCallbackGroup, so that they may run at the same time. kwargs are passed on to
         Node, so that a test can pass a context of its own.
         """
         super().__init__('distance_driver', **kwargs)
@@ -80,8 +80,9 @@ class DistanceDriver(Node):
         """
         Return GoalResponse.ACCEPT for a goal that can be driven now, otherwise REJECT.
 
-        It can be driven when distance and speed are above 0 and not above MAX_DISTANCE and
-        MAX_SPEED (nan is neither), a position is known, and no other goal is being driven.
+        It can be driven when distance is above 0 and at most MAX_DISTANCE, speed is above 0 and
+        at most MAX_SPEED (nan fails both), a position is known, and no other goal is being
+        driven.
         """
         possible = (
             0.0 < goal.distance <= DriveDistance.Goal.MAX_DISTANCE
@@ -100,9 +101,10 @@ class DistanceDriver(Node):
         Drive, stop the robot, end the goal and return its Result, whatever happens.
 
         Ten times a second: publish feedback and a command, straight on at the goal's speed,
-        until the robot is the goal's distance away from where it was (succeed). End early when
-        a cancel is requested (canceled), or when the robot has not come further by PROGRESS
-        within PATIENCE (abort), because it is stuck or the odometry is silent; reason says so.
+        until the robot is the goal's distance away from where it was at the start of the goal
+        (succeed). End early when a cancel is requested (canceled), or when the robot got less
+        than PROGRESS further within PATIENCE (abort): it is stuck, or the odometry is silent.
+        When the goal ends early, reason says why.
         """
         try:
             driven, reason = self.drive(goal_handle)
@@ -118,7 +120,7 @@ class DistanceDriver(Node):
         return DriveDistance.Result(driven=driven, reason=reason)
 
     def drive(self, goal_handle):
-        """Drive until the goal is reached or given up; return the metres driven and a reason."""
+        """Drive until the goal ends, in whatever way; return the metres driven and a reason."""
         goal = goal_handle.request
         start = self.position
         driven, furthest, progress_time = 0.0, 0.0, self.get_clock().now()
@@ -147,7 +149,7 @@ def main(args=None):
         node = DistanceDriver()
         executor = MultiThreadedExecutor()
         executor.add_node(node)
-        while rclpy.ok():  # with several threads, a spin without end can miss a SIGTERM
+        while rclpy.ok():  # with several threads, spin() without a timeout can miss a SIGTERM
             executor.spin_once(timeout_sec=1.0)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Drive forward, turn left where something is in the way, and stand still when blind."""
+"""Drive forward, turn left when something is in the way, and stand still when blind."""
 
 import math
 
@@ -38,7 +38,7 @@ def forward_clearance(scan):
     Return the distance to the nearest thing in front of the robot, in metres.
 
     A beam looks forward when its bearing, angle_min + i * angle_increment wrapped to
-    (-pi, pi], is within HALF_SECTOR of 0. Its reading counts by REP 117:
+    (-pi, pi], is within HALF_SECTOR of 0. REP 117 says how its reading counts:
 
     nan                               invalid, as if the beam were not there
     +inf                              nothing within range_max
@@ -73,8 +73,8 @@ class RobotController(Node):
 
         cmd_vel: a queue of 10. scan: qos_profile_sensor_data, because a lidar publishes
         best-effort and a reliable subscription would never match it. status: a queue of 10.
-        The timer calls control_loop every CONTROL_PERIOD. kwargs are handed on to Node, so
-        that a test can pass a context of its own.
+        The timer calls control_loop every CONTROL_PERIOD. kwargs are passed on to Node, so
+        that a test can pass its own context.
         """
         super().__init__('robot_controller', **kwargs)
         self.last_scan = None
@@ -97,7 +97,7 @@ class RobotController(Node):
 
     def control_loop(self):
         """
-        Publish exactly one command at each call, also to stand still.
+        Publish exactly one command at each call, even when the robot stands still.
 
         No scan yet, a newest scan older than SCAN_TIMEOUT, or no forward reading that
         counts: stand still. Something nearer than SAFETY_DISTANCE: turn at TURN_RATE on the

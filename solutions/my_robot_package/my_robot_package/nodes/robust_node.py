@@ -37,7 +37,7 @@ def read_sensor(generator, failure_probability):
     """
     Return 'Success', or raise SensorError with the given probability.
 
-    It stands in for a file, a network or a device. It calls generator.random() once, and
+    It simulates a file, a network or a device. It calls generator.random() once, and
     fails when that number, in [0, 1), is below failure_probability.
     """
     if generator.random() < failure_probability:
@@ -50,7 +50,7 @@ class RobustNode(Node):
     Read a sensor once a second, and publish on status (std_msgs/String) how it went.
 
     ok                     the reading succeeded
-    failed: 3 in a row     it failed; the count goes on until a reading succeeds
+    failed: 3 in a row     it failed; the count grows until a reading succeeds
     unstable: 11 in a row  it failed more than max_errors times in a row
     """
 
@@ -61,7 +61,7 @@ class RobustNode(Node):
         failure_probability: float, 0.1, from 0 to 1. seed: int, 0, from 0 to 2**31 - 1.
         max_errors: int, 10, from 1 to 1000. The generator is the one that is passed in.
         Without one, it is random.Random(seed), or, if the seed is 0, random.Random(), which
-        is different each time. kwargs are handed on to Node.
+        gives different numbers each time. kwargs are passed on to Node.
         """
         super().__init__('robust_node', **kwargs)
         self.failure_probability = self.declare_parameter(

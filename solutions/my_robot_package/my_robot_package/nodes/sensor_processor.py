@@ -23,7 +23,7 @@ from std_msgs.msg import Float32
 
 from my_robot_package.utils.data_processing import DataProcessor, mean_distance
 
-HISTORY = 10  # scans that the published mean is taken over
+HISTORY = 10  # the published mean covers this many scans
 WARN_PERIOD = 1.0  # s between two warnings
 
 
@@ -42,7 +42,7 @@ class SensorProcessor(Node):
         Name the node sensor_processor; create its publishers and its subscription.
 
         scan and scan_filtered: qos_profile_sensor_data. mean_distance: a queue of 10.
-        kwargs are handed on to Node.
+        kwargs are passed on to Node.
         """
         super().__init__('sensor_processor', **kwargs)
         self.processor = DataProcessor(HISTORY)
@@ -55,10 +55,10 @@ class SensorProcessor(Node):
 
     def scan_callback(self, msg):
         """
-        Publish the scan with its ranges masked and all else as it came, then the mean.
+        Publish the scan with masked ranges and all other fields unchanged, then the mean.
 
-        A scan without a finite distance changes no mean. It is published masked, without a
-        mean, and a warning says so, at most once every WARN_PERIOD.
+        A scan without a finite distance does not change the mean. It is published masked,
+        without a mean, and a warning is logged, at most once every WARN_PERIOD.
         """
         msg.ranges = self.processor.process(msg.ranges, msg.range_min, msg.range_max)
         self.filtered_pub.publish(msg)

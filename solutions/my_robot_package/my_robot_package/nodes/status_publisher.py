@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Sum up what the robot's own sensors say, and say how far its battery would take it."""
+"""Publish a summary of the robot's sensors, and judge whether its battery lasts for a trip."""
 
 import math
 
@@ -33,8 +33,8 @@ def battery_percent(battery):
     """
     Return a BatteryState's charge in whole percent, 0 to 100, or BATTERY_UNKNOWN.
 
-    A BatteryState counts from 0.0 to 1.0. It is unknown when battery is None, or when its
-    percentage is nan or outside of that range.
+    A BatteryState's percentage goes from 0.0 to 1.0. The charge is unknown when battery is
+    None, or when the percentage is nan or outside of that range.
     """
     if battery is None or not 0.0 <= battery.percentage <= 1.0:
         return RobotStatus.BATTERY_UNKNOWN  # BatteryState says nan when it does not know
@@ -56,7 +56,7 @@ class StatusPublisher(Node):
 
         The publisher uses STATUS_QOS, the subscriptions a queue of 10. The timer calls
         publish_status every status_period. At the end, log at level info 'Status of NAME every
-        PERIOD s'. kwargs are handed on to Node, so that a test can pass a context of its own.
+        PERIOD s'. kwargs are passed on to Node, so that a test can pass a context of its own.
         """
         super().__init__('status_publisher', **kwargs)
         self.robot_name, period = self.read_parameters()
@@ -97,7 +97,7 @@ class StatusPublisher(Node):
 
     def publish_status(self):
         """
-        Publish what is known now; what was never heard of stays unknown or empty.
+        Publish the newest values; those that have not arrived yet stay unknown or empty.
 
         The stamp is the time of this call, by self.get_clock(). The robot is charging when the
         battery's power_supply_status says POWER_SUPPLY_STATUS_CHARGING.
@@ -119,9 +119,9 @@ class StatusPublisher(Node):
         """
         Fill in whether the battery would last for a trip, and return the response.
 
-        battery_at_end is what battery_percent returns less the percent that the legs take, rounded
-        down, and never below 0. The trip is possible when that is at least the reserve, and the
-        legs take no more than there is.
+        battery_at_end is the level from battery_percent minus the percent that the legs need,
+        rounded down, and never below 0. The trip is possible when battery_at_end is at least the
+        reserve, and the legs need no more than the level.
 
         When the battery's level is unknown, or a leg is negative or not finite, the trip is not
         possible and battery_at_end is BATTERY_UNKNOWN. Whenever it is not possible, the reason
@@ -138,7 +138,7 @@ class StatusPublisher(Node):
             response.battery_at_end = left
             response.possible = used <= level and left >= request.reserve
             if not response.possible:
-                response.reason = f'{left} % would be left, less than the reserve'
+                response.reason = f'{level} % is not enough for {used:g} % and the reserve'
         return response
 
 

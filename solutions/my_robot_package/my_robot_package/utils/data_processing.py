@@ -23,10 +23,10 @@ HISTORY = 100  # scans
 
 def mask_invalid(ranges: Sequence[float], range_min: float, range_max: float) -> list[float]:
     """
-    Return the ranges with every reading that is not a measurement replaced by nan.
+    Return the ranges as a new list, with nan for each reading that is not a measurement.
 
-    The result is as long as `ranges`: a reading's place in the list is its bearing, so none
-    may be dropped. In REP 117, +inf means no return and -inf too near to measure, so both
+    The result is as long as `ranges`: a reading's place determines its bearing, so none may
+    be dropped. In REP 117, +inf means no return and -inf too near to measure, so both
     stay; a finite number outside range_min to range_max is a phantom. All distances are in
     metres.
     """

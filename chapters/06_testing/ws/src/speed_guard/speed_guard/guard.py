@@ -29,15 +29,16 @@ WATCH_PERIOD = 0.05  # s between two looks at how old the newest command is
 
 class SpeedGuard(Node):
     """
-    Stands between a planner and the motors.
+    Sits between a planner and the motors.
 
     Subscribes to cmd_vel_raw (geometry_msgs/Twist, queue of 10) and distance
     (sensor_msgs/Range, qos_profile_sensor_data), publishes cmd_vel (geometry_msgs/Twist,
     queue of 10).
 
     Each command is answered with exactly one command: linear.x becomes the safe_speed for
-    the newest distance, all other fields stay. A distance is not known before the first one
-    has come, and no longer when it came more than timeout seconds ago.
+    the newest distance, and all other fields stay as they are. A distance is not known
+    before the first one has come, and no longer known when it came more than timeout
+    seconds ago.
 
     When no command has come for more than timeout seconds, one command of zeros is
     published: one only, until the next command comes. There is none before the first.
@@ -46,7 +47,7 @@ class SpeedGuard(Node):
     """
 
     def __init__(self, **kwargs):
-        """Name the node speed_guard; kwargs are handed on to Node."""
+        """Name the node speed_guard; kwargs are passed on to Node."""
         super().__init__('speed_guard', **kwargs)
         self.stop_distance = self.declare_parameter('stop_distance', 0.5).value
         self.slow_distance = self.declare_parameter('slow_distance', 1.5).value

@@ -43,7 +43,7 @@ class StatusMonitor(Node):
             self.clearance = message
 
     def report(self):
-        """Publish the health of this moment."""
+        """Publish the current health."""
         now = self.get_clock().now()
         oldest = now.nanoseconds - self.get_parameter('silence_timeout').value * 1e9
         silent = [t for t in WATCHED if t not in self.arrivals or self.arrivals[t] <= oldest]

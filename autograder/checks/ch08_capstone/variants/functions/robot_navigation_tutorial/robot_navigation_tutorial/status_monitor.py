@@ -72,7 +72,7 @@ class Watchdog(Node):
         return self.get_clock().now().nanoseconds / 1e9
 
     def report(self):
-        """Publish the health of this moment."""
+        """Publish the current health."""
         oldest = self.seconds() - self.get_parameter('silence_timeout').value
         silent = sorted(name for name, time in self.arrivals.items() if time < oldest)
         report = Health(silent=silent)

@@ -71,7 +71,7 @@ class StatusMonitor(Node):
         return Health.OK if self.watches['clearance'].message.valid else Health.DEGRADED
 
     def report(self):
-        """Publish the health of this moment."""
+        """Publish the current health."""
         now, seconds = self.get_clock().now(), self.get_parameter('silence_timeout').value
         silent = [name for name, watch in self.watches.items() if watch.is_silent(now, seconds)]
         health = Health(level=self.level(silent), silent=silent)
