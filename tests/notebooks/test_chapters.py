@@ -60,7 +60,7 @@ def test_no_text_mentions_the_printed_chapter(chapter: Chapter) -> None:
 
 @each_chapter
 def test_the_textbook_is_mentioned_only_if_the_welcome_introduces_it(chapter: Chapter) -> None:
-    is_introduced = "call it *the textbook*" in " ".join(CHAPTERS[0].read().cells[-1].source.split())
+    is_introduced = "call this book *the textbook*" in " ".join(CHAPTERS[0].read().cells[-1].source.split())
     assert is_introduced or not any("textbook" in cell.source for cell in chapter.read().cells)
 
 
