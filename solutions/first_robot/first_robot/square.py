@@ -33,7 +33,7 @@ def command_at(seconds):
     Return (linear, angular): what the robot does this many seconds after its start.
 
     The robot drives straight on at SPEED for SIDE_SECONDS, then turns on the spot at TURN_RATE
-    for TURN_SECONDS, and repeats this for ever. At exactly SIDE_SECONDS, it already turns.
+    for TURN_SECONDS, and repeats this for ever. At exactly SIDE_SECONDS, it is already turning.
     linear is in m/s, angular in rad/s.
     """
     within = seconds % (SIDE_SECONDS + TURN_SECONDS)

@@ -22,18 +22,18 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 
-DEADLINE = 10.0  # s; only a broken node or a broken network ever waits so long
+DEADLINE = 10.0  # s; only a broken node or network makes a test wait this long
 
 
 class World:
-    """A context with an executor: the nodes of one test, and the only way to let them run."""
+    """A context with an executor, which runs the nodes of one test."""
 
     def __init__(self, context):
         self.context = context
         self.executor = SingleThreadedExecutor(context=context)
 
     def add(self, node):
-        """Let the node take part, and return it."""
+        """Add the node to the executor, and return it."""
         self.executor.add_node(node)
         return node
 

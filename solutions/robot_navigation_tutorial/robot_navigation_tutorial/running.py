@@ -19,7 +19,7 @@ from rclpy.executors import ExternalShutdownException
 
 
 def run(make_node, args=None):
-    """Spin the node that make_node() returns until SIGINT or SIGTERM; end without a traceback."""
+    """Call make_node() and spin its node until SIGINT or SIGTERM; end without a traceback."""
     rclpy.init(args=args)
     node = None
     try:
