@@ -36,17 +36,16 @@ def generate_launch_description():
         Node(package='py_pkg', executable='hello', output='screen'),
     ])
 """
-# Ends only on SIGINT, with exit code 7.
+# Ends only on SIGINT, with exit code 7. It waits with sigwait, because a signal handler that sets the threading.Event on
+# which the same thread begins to wait can deadlock.
 STUBBORN = """import signal
 import sys
-import threading
 
 
 def main():
-    done = threading.Event()
-    signal.signal(signal.SIGINT, lambda *_: done.set())
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     print('arguments', *sys.argv[1:], flush=True)
-    done.wait()
+    signal.sigwait([signal.SIGINT])
     sys.exit(7)
 """
 
@@ -192,7 +191,8 @@ def test_ros2_launch_runs_a_file_of_a_package_with_arguments(workspace: Workspac
 def test_ending_ros2_launch_ends_its_nodes(workspace: Workspace, tmp_path: Path, number: int) -> None:
     file = tmp_path / "stubborn.launch.py"
     file.write_text(LAUNCH.replace("executable='hello'", "executable='stubborn'"))
-    command = [*ROS2, "launch", str(file)]
+    # On a busy machine, a node may need longer than the 5 s after which launch sends SIGTERM.
+    command = [*ROS2, "launch", str(file), f"sigterm_timeout:={PATIENCE}"]
     with subprocess.Popen(
         command, env=workspace.env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as process:
