@@ -10,12 +10,13 @@ from sensor_msgs.msg import LaserScan
 from autograder.checking import LOCKSTEP, expect
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, PROCESSOR, TOLERANCE
-from autograder.checks.ch08_capstone.support.expectations import expect_driving
+from autograder.checks.ch08_capstone.support.expectations import expect_driving, expect_turning
 from autograder.checks.ch08_capstone.support.system import System
 
-SPEED = PARAMETERS[CONTROLLER]["forward_speed"].default
+SPEED, TURN_SPEED = (PARAMETERS[CONTROLLER][name].default for name in ("forward_speed", "turn_speed"))
 # m. EXACT_LIMIT, and the sum of LIMIT_BELOW_EXACT and the margin of 0.1 m, are exact in float32.
 EXACT_LIMIT, LIMIT_BELOW_EXACT, EXACT_CLEAR = 0.625, 1.15, 1.25
+NEARLY_CLEAR = EXACT_CLEAR - 0.01  # m
 EXACT_HALVES = (0.1875, 0.3125, 0.5, 0.625)  # rad, each exact in float32
 OPEN = scan(fill=math.inf)
 
@@ -28,6 +29,9 @@ def expect_exact_limits(system: System) -> None:
         expect_driving(commands, f"With exactly safety_distance ({EXACT_LIMIT:g} m) ahead", SPEED, fraction=0.75)
     with system.changed_parameter(CONTROLLER, "safety_distance", LIMIT_BELOW_EXACT):
         system.publish_scans(_ahead(1.0))
+        commands = system.publish_scans(_ahead(NEARLY_CLEAR)).commands
+        situation = f"During a turn, with less than safety_distance + MARGIN ({NEARLY_CLEAR:g} m) ahead"
+        expect_turning(commands, situation, "left", TURN_SPEED, fraction=0.75)
         commands = system.publish_scans(_ahead(EXACT_CLEAR)).commands
         situation = f"During a turn, with exactly safety_distance + MARGIN ({EXACT_CLEAR:g} m) ahead"
         expect_driving(commands, situation, SPEED, fraction=0.75)
