@@ -86,11 +86,11 @@ def verify(
     Each named mutant must fail the check for which it was written, and otherwise exactly the checks in the snapshot.
     No attack may gain a point. Of the generated mutants that are not equivalent to the reference, at least 95 % of
     each chapter and 97 % of all chapters must fail a check. Every other one needs a reason in survivors.yaml. A mutant
-    with a reason is only graded if --only names it.
+    with a reason is only graded if --only names it. A named mutant that loses more than twice the points of its own
+    check needs a reason, in its result or in its entry in mutants.yaml.
 
     An interrupted run continues: a result is reused as long as the checks, the grader and the submission are
-    unchanged. The file mutants.md in the folder for the results contains the tables. It lists each named mutant that
-    loses more than twice the points of its own check, unless its result or its entry in mutants.yaml gives a reason.
+    unchanged. The file mutants.md in the folder for the results contains the tables.
 
     Nothing is graded if checks, mutants or the reference have mistakes that `autograder course check` also reports.
 
@@ -153,8 +153,8 @@ def verify(
     for path in filter(None, (out / "verify.json", json_file)):
         write_json(path, document)
     write_atomically(out / "mutants.md", f"{report(chapter_results)}\n{costs.report(mutant_costs)}".encode())
-    mutant_faults = faults(chapter_results)
-    for sentence in (*mutant_faults, *costs.unexplained(mutant_costs)):
+    mutant_faults = [*faults(chapter_results), *costs.unexplained(mutant_costs)]
+    for sentence in mutant_faults:
         echo(sentence, err=True)
     sys.exit(0 if all(verdict.is_expected for verdict in verdicts) and not mutant_faults else 1)
 

@@ -41,7 +41,7 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def autograder(course: Path, tmp_path: Path) -> Run:
     """Run a verb on the second course, from an unrelated folder."""
     return lambda *arguments, **variables: run(
-        "autograder", *arguments, cwd=tmp_path, AUTOGRADER_COURSE=str(course), **variables
+        "autograder", *arguments, cwd=tmp_path, **{"AUTOGRADER_COURSE": str(course), **variables}
     )
 
 
@@ -61,6 +61,19 @@ def test_the_verification_of_a_second_course_succeeds(autograder: Run) -> None:
         assert f"{name} reference" in process.stdout
     assert "01_greeting variant added" in process.stdout
     assert "02_beat mutant" in process.stdout
+
+
+def test_a_mutant_that_costs_too_much_without_a_reason_fails_the_verification(
+    course: Path, autograder: Run, tmp_path: Path
+) -> None:
+    changed_course = tmp_path / "course"
+    shutil.copytree(course, changed_course)
+    mutants = changed_course / "checks/ch01_greeting/mutants.yaml"
+    mutants.write_text(mutants.read_text().replace("check: greets", "check: strips"))
+    process = autograder("verify", "--only", "same_name", AUTOGRADER_COURSE=str(changed_course))
+    assert process.returncode == 1
+    assert re.search(r"^01_greeting mutant same_name +0/3 = 0 % +as expected$", process.stdout, re.MULTILINE)
+    assert "mutant same_name: it loses 3 points, strips is worth 1, and no reason is given" in process.stderr
 
 
 @pytest.mark.promise(
