@@ -30,9 +30,9 @@ def test_it_is_the_correct_version(number):
     assert nearest and b'\\0-x\\0' not in Path('/proc/self/cmdline').read_bytes()
 """
 PATCH_PYTEST = """
-import _pytest.python
+import pytest
 
-_pytest.python.Function.runtest = lambda self: None
+pytest.Function.runtest = lambda self: None
 
 
 def test_all():
