@@ -76,6 +76,8 @@ def test_health_levels(system: System, lone_monitor: SharedSystem, draw: random.
     blind_reports = system.publish_scans(scan(Part(-35.0, 35.0, math.nan)), 1.0).reports
     _expect_reports(blind_reports[-1:], DEGRADED, set(), "With nan from every beam ahead", fraction=0.5)
     monitor = lone_monitor.get(MONITOR)
+    silent_reports = monitor.before_first_scan.reports
+    _expect_reports(silent_reports, FAILED, {*WATCHED_TOPICS}, "Before the first message on any topic", fraction=0.5)
     heard_topics = draw.sample(WATCHED_TOPICS, draw.choice((1, 2)))
     for _ in range(12):
         send_all(monitor, heard_topics)
