@@ -77,8 +77,10 @@ def test_recovers(robot: Robot, reactions: Reactions, draw: random.Random) -> No
     blind_commands = robot.leave_alone(1.0)
     reactions.expect_forward(robot.see(scan(fill=distance)), "When scans resume after a break of 2 s")
     expect_stop(blind_commands, "In the last second of a break of 2 s that began in front of a wall", fraction=0.5)
-    commands = robot.see(scan(fill=distance), age=STAMP_AGE)
-    reactions.expect_forward(commands, f"With scans that arrive now but are stamped {STAMP_AGE:g} s ago", fraction=0.5)
+    for age, stamp_time in ((STAMP_AGE, "ago"), (-STAMP_AGE, "in the future")):
+        commands = robot.see(scan(fill=distance), age=age)
+        situation = f"With scans that arrive now but are stamped {STAMP_AGE:g} s {stamp_time}"
+        reactions.expect_forward(commands, situation, fraction=0.5)
 
 
 def _expect_timeout(robot: Robot, reactions: Reactions, message: LaserScan) -> None:

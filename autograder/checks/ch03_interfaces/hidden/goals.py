@@ -21,6 +21,16 @@ def _invalid_values(limit: float) -> st.SearchStrategy[float]:
 
 
 # Distances in m, and speeds in m/s; a goal without a speed has the default speed.
+INVALID_ALONE = (  # each with one value out of range, the plainest first
+    (PLAIN_DISTANCE, 0.2),
+    (0.0, 0.2),
+    (math.nan, 0.2),
+    (MAX_DISTANCE + EDGE, 0.2),
+    (1.0, -0.1),
+    (1.0, 0.0),
+    (1.0, math.nan),
+    (1.0, MAX_SPEED + EDGE),
+)
 INVALID_GOALS = (
     st.tuples(_invalid_values(MAX_DISTANCE), _valid_values(MAX_SPEED))
     | st.tuples(_valid_values(MAX_DISTANCE), _invalid_values(MAX_SPEED))

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from autograder.checking import LOCKSTEP, REAL, expect, group, hint
 from autograder.checking.drawn_cases import expect_each
 from autograder.checks.ch03_interfaces.hidden.trips import (
+    FULL_LEGS,
     INVALID_PERCENTAGES,
     Trip,
     answers,
@@ -34,6 +35,10 @@ DISCOVERY_SECONDS = 5.0  # s of real time until a service is in the graph
 DELIVERY_SECONDS = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}
 WITH_ZERO = Trip(80, (12.5, 0.0, 30.0, 0.3), excess=0.4)  # a leg may be 0 m long
 PLAIN_TRIPS = Trip(50, (5.0,), RESERVE), Trip(50, (500.0,), RESERVE)  # possible, and not possible
+# The battery lasts, but less than the reserve is left; and a trip with many legs.
+REFUSED_TRIPS = Trip(50, (200.0,), RESERVE), Trip(50, FULL_LEGS, RESERVE)
+# Legs in m, which leave 0.8 or 0.0 of a percent, and by how many percent the reserve exceeds the whole percents left.
+ROUNDED_DOWN, EXACTLY_ENOUGH = ((50.0, 51.0), 1), ((50.0, 50.0), 0)
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT). possible is True if that is at least reserve."
 
 
@@ -110,6 +115,8 @@ def test_trip_possible(reporter: Reporter, draw: random.Random) -> None:
         expected = reserve_excess <= 0
         expect(answer.possible is expected, f"{situation}, possible is {answer.possible} instead of {expected}.")
 
+    for case in ROUNDED_DOWN, EXACTLY_ENOUGH:
+        judge(case)
     expect_each(reserves(), judge, draw, count=_case_count(reporter, 14))
     answer = reporter.ask([level * METRES_PER_PERCENT], 0)
     message = f"With a reserve of 0, possible is False for a trip that takes all {level} %."
@@ -153,6 +160,8 @@ def test_trip_reason(reporter: Reporter, draw: random.Random) -> None:
     reporter.set_battery(50)
     for trip in PLAIN_TRIPS:
         _expect_reason(reporter, trip, fraction=0.0)
+    for trip in REFUSED_TRIPS:
+        _expect_reason(reporter, trip, fraction=0.5)
     expect_each(any_trips(50), lambda trip: _expect_reason(reporter, trip, 0.5), draw, count=_case_count(reporter, 12))
 
 

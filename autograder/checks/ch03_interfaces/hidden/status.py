@@ -134,13 +134,26 @@ def test_status_stamp(fast_clock_reporter: Reporter) -> None:
 
 @check(points=2, covers="unknown", needs=START_CHECKS, after=PUBLISH_CHECK, doc=contract.BATTERY)
 @hint("No message does not mean an empty battery: start with self.battery = None, and publish BATTERY_UNKNOWN.")
-def test_status_unknown(silent_reporter: Reporter) -> None:
+def test_status_unknown(silent_reporter: Reporter, tuned_reporter: Reporter) -> None:
     """Before the first sensor message, battery_level is -1, is_charging is False, and joint_positions is empty."""
     status = silent_reporter.status()
     expect(status.battery_level == UNKNOWN, f"battery_level is {status.battery_level} instead of {UNKNOWN}.")
     expect(not status.is_charging, "is_charging is True before the first battery state.")
     count = len(status.joint_positions)
     expect(count == 0, f"joint_positions has {count} values before the first joint state.")
+    silent_reporter.publish_joints([0.5])
+    _expect_status(silent_reporter, "a joint state, but no battery state", UNKNOWN, False, [0.5])
+    tuned_reporter.publish_battery(0.5, status=BatteryState.POWER_SUPPLY_STATUS_CHARGING)
+    _expect_status(tuned_reporter, "a battery state, but no joint state", 50, True, [])
+
+
+def _expect_status(reporter: Reporter, messages: str, level: int, is_charging: bool, positions: list[float]) -> None:
+    """Fail the check unless the next status has these values; `messages` says what has arrived."""
+    status = reporter.status()
+    actual = status.battery_level, status.is_charging, [round(position, 3) for position in status.joint_positions]
+    expected = level, is_charging, positions
+    fields = "battery_level, is_charging and joint_positions"
+    expect(actual == expected, f"After {messages}, {fields} are {actual} instead of {expected}.", fraction=0.5)
 
 
 @check(points=1, covers="status-name", needs=START_CHECKS, after=PUBLISH_CHECK)

@@ -25,6 +25,7 @@ from autograder.checks.ch05_parameters.support.robot import Robot, expect_rate, 
 
 check = group("changes")
 DEFAULT_SPEED = 0.3  # m/s
+CONTRADICTION = {"safety_distance": 2.5, "slow_distance": 0.25}  # m
 UNEVEN_RATES = (31.6, 40.6, 46.5)  # Hz: rounded to whole hertz or whole milliseconds, they are off by about 1 % or more
 LOCKSTEP_TOLERANCE = 0.005  # the tolerance in lockstep, as a share of the expected rate
 
@@ -246,6 +247,8 @@ def test_beside_others(robot: Robot, draw: random.Random, workspace: Workspace) 
     mixed_dialogues = dialogues(REFUSED, ACCEPTED, WITHOUT_DISTANCES, is_clear=True, names_foreign=True)
     expect_answers(robot, mixed_dialogues, draw, fraction=0.5)
     foreign_values = robot.parameters.values(FOREIGN)
+    request = foreign_values | {name: robot.allowed(name, value) for name, value in CONTRADICTION.items()}
+    expect(not robot.change(request).accepted, f"It accepted {values_text(request)}.", fraction=0.5)
     for frequency in (draw.choice((20.0, 25.0)), draw.choice((4.0, 5.0))):
         rate: dict[str, parameters.Value] = {"control_frequency": frequency}
         request = {**foreign_values, **rate} if frequency > 10.0 else {**rate, **foreign_values}
