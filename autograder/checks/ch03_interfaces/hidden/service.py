@@ -35,8 +35,8 @@ DISCOVERY_SECONDS = 5.0  # s of real time until a service is in the graph
 DELIVERY_SECONDS = {LOCKSTEP: 0.1, REAL: PERIOD + 0.2}
 WITH_ZERO = Trip(80, (12.5, 0.0, 30.0, 0.3), excess=0.4)  # a leg may be 0 m long
 PLAIN_TRIPS = Trip(50, (5.0,), RESERVE), Trip(50, (500.0,), RESERVE)  # possible, and not possible
-# The battery lasts, but less than the reserve is left; and a trip with many legs.
-REFUSED_TRIPS = Trip(50, (200.0,), RESERVE), Trip(50, FULL_LEGS, RESERVE)
+# The battery lasts, but less than the reserve is left; many legs that are too long; many legs, and one is negative.
+REFUSED_TRIPS = Trip(50, (200.0,), RESERVE), Trip(50, FULL_LEGS, RESERVE), Trip(50, (*FULL_LEGS[1:], -1.0), RESERVE)
 # Legs in m, which leave 0.8 or 0.0 of a percent, and by how many percent the reserve exceeds the whole percents left.
 ROUNDED_DOWN, EXACTLY_ENOUGH = ((50.0, 51.0), 1), ((50.0, 50.0), 0)
 RULE = "battery_at_end = floor(level - sum(legs) / METRES_PER_PERCENT). possible is True if that is at least reserve."
