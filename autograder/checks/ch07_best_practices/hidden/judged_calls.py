@@ -34,6 +34,18 @@ def judge_means(
     expect_all(pairs, lambda pair: judge(pair[0], calls.value(pair[1], f"mean_distance({pair[0]})")))
 
 
+def judge_processed(workspace: Workspace, cases: Sequence[Readings], *, fraction: float) -> None:
+    """Fail the check unless a DataProcessor returns the masked ranges of each scan."""
+    plan = calls.Plan()
+    processor = plan.add(calls.call("DataProcessor", 3))
+    steps = [plan.add(calls.call("process", list(case.readings), case.low, case.high, on=processor)) for case in cases]
+    outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
+    for case, step in zip(cases, steps, strict=True):
+        returned = calls.value(outcomes[step], f"process({case!r})")
+        message = f"process({case!r}) returned {returned} instead of {case.masked}."
+        expect(calls.same(returned, case.masked), message, fraction=fraction)
+
+
 def judge_averages(workspace: Workspace, cases: Sequence[Series], *, fraction: float) -> None:
     """Fail the check unless a DataProcessor for each series, all in one process, has the correct averages."""
     plan = calls.Plan()

@@ -197,11 +197,13 @@ def test_warns_now_and_then(fresh_processor: Processor, draw: random.Random) -> 
 def test_any_lidar(processor: Processor, draw: random.Random) -> None:
     """sensor_processor accepts scans with any number of beams, even none."""
     for beams in (0, 1, 7, 1080, *draw.sample(range(2, 4000), 6), 0):
-        filtered, _ = processor.send_scans(scan([1.0] * beams))
+        filtered, means = processor.send_scans(scan([1.0] * beams))
         lengths = [len(message.ranges) for message in filtered]
         expect(
             lengths == [beams], f"A scan of {beams} beams was sent. Beams of the published scans: {lengths or 'none'}."
         )
+        has_needless_mean = bool(means) and not beams
+        expect(not has_needless_mean, f"For a scan without beams, it published the means {means} m.", fraction=0.5)
 
 
 def _expect_separate_histories(workspace: Workspace) -> None:

@@ -9,7 +9,12 @@ from hypothesis import strategies as st
 
 from autograder.checking import Workspace, expect, group, hint
 from autograder.checking.probes import calls
-from autograder.checks.ch07_best_practices.hidden.judged_calls import judge_averages, judge_masked, judge_means
+from autograder.checks.ch07_best_practices.hidden.judged_calls import (
+    judge_averages,
+    judge_masked,
+    judge_means,
+    judge_processed,
+)
 from autograder.checks.ch07_best_practices.support.contract import (
     DEQUE,
     REP_117,
@@ -96,8 +101,8 @@ def test_limits_count(workspace: Workspace, draw: random.Random) -> None:
             fraction=0.0 if case.is_usual else 0.5,
         )
 
-    plain = Readings((LOW, HIGH))
-    judge_masked(workspace, [plain, *draw_cases(other_lidars(at_limits=True), draw, 12)], judge)
+    plain, from_zero = Readings((LOW, HIGH)), Readings((0.0, LOW / 2, HIGH), 0.0, HIGH)
+    judge_masked(workspace, [plain, from_zero, *draw_cases(other_lidars(at_limits=True), draw, 12)], judge)
 
 
 @check(points=2, covers=("infinities", "mask"), after=("keeps_places",), doc=REP_117)
@@ -232,12 +237,13 @@ def test_any_sequence(workspace: Workspace, draw: random.Random) -> None:
 @check(points=2, covers=("history", "process"), after=("keeps_places", "mean"), doc=DEQUE)
 @hint("deque(maxlen=history).", "When the history is full, a new mean replaces the oldest one.")
 def test_bounded_history(workspace: Workspace, draw: random.Random) -> None:
-    """DataProcessor remembers the means of the newest scans, and at most `history` of them."""
+    """DataProcessor returns masked ranges, and remembers the means of the newest scans, at most `history` of them."""
     long_series = Series(tuple(draw_cases(GOOD_SCANS, draw, 12)), draw.randint(3, 6))
     judge_averages(workspace, [long_series], fraction=0.0)
     judge_averages(workspace, draw_cases(series(GOOD_SCANS, st.integers(1, 5)), draw, 12), fraction=0.5)
     scans = tuple(Readings((millimetres / 1000,)) for millimetres in draw.sample(range(1000, 5000), 107))
     judge_averages(workspace, [Series(scans, None)], fraction=0.75)
+    judge_processed(workspace, [Readings((1.0, 0.0, inf, 9.0)), Readings((nan, -1.0))], fraction=0.75)
 
 
 @check(points=1, covers=("process", "average"), after=("bounded_history", "no_mean"))

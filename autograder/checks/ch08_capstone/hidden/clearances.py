@@ -43,6 +43,14 @@ OTHER_LIDARS = st.sampled_from((USUAL_LIMITS, *OTHER_LIMITS)).flatmap(
 )
 # A scan of a wall ahead in which a few beams read nan, and a scan without beams.
 WALL = DrawnScan(360, 0.0, 1.0, USUAL_LIMITS, 3.0, (Arc(0, 20, 1.0), Arc(0, 3, math.nan)), "laser", 0.0)
+# Scans of one arc ahead, with each reading that has a meaning or is around a limit.
+LOWEST, HIGHEST = USUAL_LIMITS
+SPECIAL_READINGS = (LOWEST - 0.01, LOWEST, HIGHEST, HIGHEST + 0.01, 0.0, -1.0, math.inf, -math.inf, math.nan)
+FROM_ZERO = 0.0, 6.5  # m: the limits of a lidar for which 0 m is a distance
+LIMIT_SCANS = tuple(
+    DrawnScan(360, 0.0, 1.0, limits, math.nan, (Arc(0, 20, reading),), "laser", 0.0)
+    for limits, reading in (*((USUAL_LIMITS, reading) for reading in SPECIAL_READINGS), (FROM_ZERO, 0.0))
+)
 EMPTY = DrawnScan(0, 0.0, 1.0, USUAL_LIMITS, 3.0, (), "laser", 0.0)
 
 
@@ -81,6 +89,8 @@ def test_sectors(processor_system: System, workspace: Workspace, draw: random.Ra
 def test_readings(processor_system: System, draw: random.Random) -> None:
     """Readings count by REP 117, and a sector in which no reading counts makes the clearance invalid."""
     _expect_distances(processor_system, WALL, WALL.message(), fraction=0.0)
+    for limit_scan in LIMIT_SCANS:
+        _expect_distances(processor_system, limit_scan, limit_scan.message(), fraction=0.5)
     special_scans = drawn_scans(readings(USUAL_LIMITS), FILLS)
     expect_each(
         special_scans,

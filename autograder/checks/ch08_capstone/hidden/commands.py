@@ -39,10 +39,30 @@ TURN_SPEED = PARAMETERS[CONTROLLER]["turn_speed"].default
 DATA_TIMEOUT = PARAMETERS[CONTROLLER]["data_timeout"].default
 CLOCK_LEADS = 0.1, 0.6, 1.0, 5.0  # s by which the lidar's clock is ahead; some exceed data_timeout
 TURN_RIGHT, TURN_LEFT = View(0.4, 1.0, 2.0), View(0.4, 2.0, 1.0)
-# Drives in which the robot keeps its turn, although one side is blind for a while, or the robot is held still.
-KEPT_WHILE_BLIND = Moment(TURN_RIGHT), Moment(replace(TURN_RIGHT, left=math.nan)), Moment(TURN_LEFT)
-KEPT_WHILE_HELD = Moment(TURN_RIGHT), Moment(CLEAR, enable=False), Moment(TURN_LEFT, enable=True)
+LONG_AGO, LATE_SCANS = 5.0, 8  # s, and scans of this age until the clearance before them is too old as well
+# Drives in which the robot stands still for a while. Meanwhile, no turn ends and none begins.
+KEPT_WHILE_UNTRUSTED = (
+    (Moment(TURN_RIGHT), Moment(replace(TURN_RIGHT, left=math.nan)), Moment(TURN_LEFT)),
+    (Moment(TURN_RIGHT), Moment(replace(CLEAR, left=math.nan)), Moment(TURN_LEFT)),
+    (Moment(replace(TURN_RIGHT, left=math.nan)), Moment(TURN_LEFT)),
+    (Moment(TURN_RIGHT), Moment(CLEAR, LATE_SCANS, LONG_AGO), Moment(TURN_LEFT)),
+    (Moment(TURN_RIGHT, LATE_SCANS, LONG_AGO), Moment(TURN_LEFT)),
+)
+KEPT_WHILE_HELD = (
+    (Moment(TURN_RIGHT), Moment(CLEAR, enable=False), Moment(TURN_LEFT, enable=True)),
+    (Moment(TURN_RIGHT, enable=False), Moment(TURN_LEFT), Moment(TURN_LEFT, enable=True)),
+)
 BLIND = scan(Part(-35.0, 35.0, math.nan))
+# The side to which the robot turns, and the distances on the left and on the right in m.
+SIDES = (
+    (LEFT, 2.0, 1.0),
+    (RIGHT, 1.0, 2.0),
+    (LEFT, math.inf, math.inf),
+    (LEFT, math.inf, 1.0),
+    (RIGHT, 1.0, math.inf),
+    (LEFT, 1.0, -math.inf),
+    (RIGHT, -math.inf, 1.0),
+)
 
 
 @check(
@@ -85,16 +105,16 @@ def test_turns(judge_driving: BodyRunner, draw: random.Random) -> None:
 
 
 def _expect_turns(system: System, draw: random.Random) -> None:
-    sides = ((LEFT, 2.0, 1.0), (RIGHT, 1.0, 2.0), (LEFT, math.inf, math.inf), (RIGHT, 1.0, math.inf))
-    for side, left, right in sides:
+    for side, left, right in SIDES:
         system.publish_scans(OPEN)
         commands = system.publish_scans(View(0.4, left, right).scan()).commands
         situation = (
             f"With something 0.4 m ahead, {distance_text(left)} on the left, {distance_text(right)} on the right"
         )
-        expect_turning(commands, situation, side, TURN_SPEED, fraction=0.5 if left == right else 0.0)
+        expect_turning(commands, situation, side, TURN_SPEED, fraction=0.0 if math.isfinite(left - right) else 0.5)
         expect_driving(system.publish_scans(OPEN).commands, "When the way is clear again", SPEED, fraction=0.5)
-    expect_drive(system, KEPT_WHILE_BLIND, DRIVE, LEFT, RIGHT, fraction=0.75)
+    for kept_drive in KEPT_WHILE_UNTRUSTED:
+        expect_drive(system, kept_drive, DRIVE, LEFT, RIGHT, fraction=0.75)
     # In some of these drives, the robot also has to stand still. This check does not judge whether it does.
     expect_each(
         turns(),
@@ -184,7 +204,8 @@ def _expect_enable_service(system: System, draw: random.Random) -> None:
     expect(message_period.is_paced(commands, 0.1, system.harness.time), message, fraction=0.75)
     expect_enabled(system, True, fraction=0.5)
     expect_driving(system.publish_scans(OPEN).commands, "After a call of enable with data: true", SPEED, fraction=0.5)
-    expect_drive(system, KEPT_WHILE_HELD, STILL, DRIVE, LEFT, RIGHT, fraction=0.75)
+    for kept_drive in KEPT_WHILE_HELD:
+        expect_drive(system, kept_drive, STILL, DRIVE, LEFT, RIGHT, fraction=0.75)
     expect_each(
         calls(),
         lambda drive: expect_drive(system, drive, STILL, DRIVE, LEFT, RIGHT, fraction=0.5),

@@ -150,6 +150,8 @@ SCANS_STAMPED_AHEAD = (
     Span(ALL_TOPICS, 5, age=-5.0),
     Span(ALL_TOPICS - {"scan"}, round(SILENCE_TIMEOUT / SCAN_SECONDS) + 10),
 )
+# One topic is silent, and then another one, so that no topic may count as heard because another one is.
+ONE_SILENT_TOPIC = Span(ALL_TOPICS - {"clearance"}, 20), Span(ALL_TOPICS, 3), Span(ALL_TOPICS - {"cmd_vel"}, 20)
 
 
 @st.composite

@@ -11,6 +11,7 @@ from autograder.checking.drawn_cases import expect_each
 from autograder.checking.probes import message_period
 from autograder.checks.ch02_nodes.support.scans import Part, scan
 from autograder.checks.ch08_capstone.hidden.drawn_reports import (
+    ONE_SILENT_TOPIC,
     SCANS_STAMPED_AHEAD,
     describe,
     expect_reports,
@@ -119,6 +120,7 @@ def test_dead_sensor(
         _expect_ros_time(slow_system.get(*PROGRAMS))
     monitor = lone_monitor.get(MONITOR)
     expect_reports(monitor, SCANS_STAMPED_AHEAD, fraction=0.75)
+    expect_reports(monitor, ONE_SILENT_TOPIC, fraction=0.75)
     expect_each(
         silences(), lambda history: expect_reports(monitor, history, fraction=0.75), draw, count=_case_count(monitor, 8)
     )

@@ -206,17 +206,11 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
         harness.try_to_set(hot=hot + 5.0, cool=cool - 5.0)
         prefix = f"Started with hot {hot} and cool {cool}, which were then set 5 °C further apart: "
         expect_decisions(harness, [hot + 1.0, cool - 1.0], prefix, hot=hot, cool=cool, fraction=0.5)
-    unusual_thresholds: dict[str, float] = draw.choice(({"hot": 0.0, "cool": -20.0}, {"hot": 20.0, "cool": 0.0}))
-    with start(GUARD, **unusual_thresholds) as harness:
-        temperatures = [
-            unusual_thresholds["hot"] + 1.0,
-            unusual_thresholds["cool"] + 1.0,
-            unusual_thresholds["cool"] - 1.0,
-            unusual_thresholds["hot"] - 1.0,
-        ]
-        expect_decisions(
-            harness, temperatures, f"With {_values_text(unusual_thresholds)}: ", fraction=0.75, **unusual_thresholds
-        )
+    for hot_of_two, cool_of_two in ((0.0, -20.0), (20.0, 0.0)):
+        thresholds = {"hot": hot_of_two, "cool": cool_of_two}
+        temperatures = [hot_of_two + 1.0, cool_of_two + 1.0, cool_of_two - 1.0, hot_of_two - 1.0]
+        with start(GUARD, **thresholds) as harness:
+            expect_decisions(harness, temperatures, f"With {_values_text(thresholds)}: ", fraction=0.75, **thresholds)
     for invalid_values in (
         {"hot": hot, "cool": hot},
         {"hot": COOL - MARGIN},
@@ -233,7 +227,7 @@ def test_thresholds(workspace: Workspace, types: Types, start: Start, draw: Rand
 def test_unknown(start: Start, draw: Random) -> None:
     """If the temperature is not a finite number, it is unknown, and the fan runs."""
     with start(GUARD) as harness:
-        expect_decisions(harness, [20.0, math.nan, 20.0, 70.0, -math.inf, 20.0], "")
+        expect_decisions(harness, [20.0, math.nan, 20.0, -math.inf, 20.0, math.inf, 20.0, 70.0, -math.inf, 20.0], "")
         expect_switching(harness, around_thresholds(*UNKNOWN), draw, fraction=0.5)
 
 
@@ -279,9 +273,9 @@ def _values_text(values: Mapping[str, float]) -> str:
 
 
 def draw_wave(draw: Random) -> tuple[float, float, float]:
-    """Draw a period in s, a mean and a swing in degrees Celsius."""
+    """Draw a period in s, a mean below 0 and a swing in degrees Celsius; the default mean is above 0."""
     period = draw.choice((0.1, 0.2, 0.8))
-    return period, draw.choice((-1, 1)) * round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
+    return period, -round(draw.uniform(20.0, 40.0), 1), round(draw.uniform(3.0, 9.0), 1)
 
 
 def draw_thresholds(draw: Random) -> tuple[float, float]:
