@@ -26,8 +26,10 @@ SKIPPED_FOLDERS = frozenset({"/build", "/install", "/log", "__pycache__", ".ipyn
 # The rosdep keys of common modules that are not ROS packages. A ROS package's key is its own name.
 KEYS = {
     "PIL": "python3-pil",
+    "_pytest": "python3-pytest",
     "cv2": "python3-opencv",
     "matplotlib": "python3-matplotlib",
+    "mpl_toolkits": "python3-matplotlib",
     "networkx": "python3-networkx",
     "numpy": "python3-numpy",
     "pandas": "python3-pandas",

@@ -121,5 +121,7 @@ def _receive(line: Connection, max_size: int) -> bytes:
         return line.recv_bytes(max_size)
     except EOFError:
         raise
+    except ConnectionError:  # the sender has not read all that was sent to it
+        raise EOFError from None
     except OSError:
         raise MessageError(f"a message has more than {max_size} bytes") from None

@@ -56,7 +56,14 @@ def test_an_import_has_its_files_and_the_dependency_that_declares_it(package: Pa
 
 
 @pytest.mark.parametrize(
-    ("module", "dependency"), [("numpy", "python3-numpy"), ("tf2_ros", "tf2_ros"), ("lark_x", "python3-lark-x")]
+    ("module", "dependency"),
+    [
+        ("numpy", "python3-numpy"),
+        ("tf2_ros", "tf2_ros"),
+        ("lark_x", "python3-lark-x"),
+        ("_pytest", "python3-pytest"),
+        ("mpl_toolkits", "python3-matplotlib"),
+    ],
 )
 def test_a_module_is_declared_by_its_rosdep_key_or_as_a_ros_package(module: str, dependency: str) -> None:
     assert not imports.undeclared([imports.Import(module, ())], {dependency})

@@ -11,7 +11,7 @@ import pytest
 
 from autograder.building import bundle_server
 from autograder.run.sandbox.limits import SOURCES
-from autograder.run.sandbox.messages import MessageError, receive_tree, send_tree, write_received
+from autograder.run.sandbox.messages import MessageError, receive_message, receive_tree, send_tree, write_received
 from autograder.run.sandbox.trees import Entry, TreeError, list_tree, read_tree
 
 FOLDER = Entry("p", "folder")
@@ -30,6 +30,15 @@ def test_a_file_has_the_size_that_the_list_says() -> None:
         send_and_receive({Entry("a", "file", False, 1): b"more"})
     with pytest.raises(MessageError, match="a file of 9 bytes has 4"):
         send_and_receive({Entry("a", "file", False, 9): b"less"})
+
+
+def test_a_sender_that_ends_without_reading_has_closed_the_connection() -> None:
+    ours, theirs = Pipe()
+    with ours:
+        ours.send_bytes(b"unread")
+        theirs.close()
+        with pytest.raises(EOFError):
+            receive_message(ours)
 
 
 def test_different_trees_have_different_keys() -> None:

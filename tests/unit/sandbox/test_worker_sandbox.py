@@ -61,6 +61,21 @@ def test_a_worker_imports_nothing_from_the_folder_that_the_grader_was_started_in
     assert not (tmp_path / "ran").exists()
 
 
+ENTER = """
+import sys
+from autograder.run.sandbox import Isolation
+from autograder.run.sandbox.worker_sandbox import run_in_worker_sandbox
+
+print(run_in_worker_sandbox(lambda scratch: [sys.executable, "-c", "print(2)"], Isolation.BUBBLEWRAP).output)
+"""
+
+
+def test_python_may_be_started_by_a_path_that_leads_through_a_folder_that_the_sandbox_lacks(tmp_path: Path) -> None:
+    python = f"{os.path.relpath(Path(sys.executable).parent, tmp_path)}/{Path(sys.executable).name}"
+    process = subprocess.run([python, "-c", ENTER], text=True, capture_output=True, cwd=tmp_path)
+    assert (process.stdout, process.stderr) == ("2\n\n", "")
+
+
 GRADER = """
 import sys
 from autograder import course_paths
