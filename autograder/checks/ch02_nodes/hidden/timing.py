@@ -24,6 +24,14 @@ ALTERNATE_SECONDS, ALTERNATIONS = 0.2, 15  # s with an obstacle, and then withou
 # Obstacles that are shown in turn. If a node throttles two warnings separately, it logs two of them within 1.2 s,
 # whichever obstacles each is for.
 OBSTACLES = (Part(10.0, 20.0, 0.9), Part(-5.0, 5.0, -math.inf), Part(-20.0, -10.0, 0.3))
+UNSEEN_SECONDS = 3.0  # s without a scan
+# A clear way between things that do not count ahead of a robot, beside it or behind it.
+CLEAR_PARTS = (
+    Part(60.0, 110.0, 0.5),
+    Part(150.0, 180.0, -math.inf),
+    Part(4.0, 8.0, math.nan),
+    Part(-8.0, -4.0, 0.0),
+)
 _ENTRY_START = re.compile(r"^(?=\[(?:DEBUG|INFO|WARN|ERROR|FATAL)\] )", re.MULTILINE)  # where a log entry begins
 
 
@@ -52,7 +60,7 @@ def test_ten_hertz(robot: Robot) -> None:
 @hint("A warning for every scan adds 10 lines a second to the log. Nobody can read them.")
 @hint("self.get_logger().warning(..., throttle_duration_sec=1.0)")
 def test_no_flood(robot: Robot) -> None:
-    """It warns at most once a second while it is blocked, even if the obstacle goes and comes back."""
+    """It warns at most once a second, even if the obstacle goes and comes back or the robot is blind meanwhile."""
     start, warnings_before = robot.seconds, len(_log_entries(robot, "WARN"))
     robot.see(scan(JUST_AHEAD), FLOOD_SECONDS)
     _expect_few_warnings(robot, start, warnings_before, f"Blocked for {FLOOD_SECONDS:.0f} s,")
@@ -63,6 +71,13 @@ def test_no_flood(robot: Robot) -> None:
     seconds = robot.seconds - start
     situation = f"Blocked {ALTERNATIONS} times in {seconds:.0f} s, by something far, near or too near to measure,"
     _expect_few_warnings(robot, start, warnings_before, situation, fraction=0.5)
+    start, warnings_before = robot.seconds, len(_log_entries(robot, "WARN"))
+    for _ in range(ALTERNATIONS):
+        robot.see(scan(JUST_AHEAD), ALTERNATE_SECONDS)
+        robot.see(scan(fill=math.nan), ALTERNATE_SECONDS)
+    robot.leave_alone(UNSEEN_SECONDS)
+    situation = f"Blocked and blind {ALTERNATIONS} times in turn, then without scans for {UNSEEN_SECONDS:.0f} s,"
+    _expect_few_warnings(robot, start, warnings_before, situation, fraction=0.5)
 
 
 @check(points=1, covers="warns", needs=("subscribes_scan",), after=("turns_when_blocked", "minus_inf"))
@@ -70,6 +85,9 @@ def test_no_flood(robot: Robot) -> None:
 @hint("It must warn repeatedly while it is blocked, not once for each obstacle.")
 def test_warns(fresh_robot: Robot, reactions: Reactions) -> None:
     """It warns once a second whenever something is in the way, and never while the way is clear."""
+    start = fresh_robot.seconds
+    fresh_robot.leave_alone(UNSEEN_SECONDS)
+    _expect_few_warnings(fresh_robot, start, 0, "Before the first scan,", fraction=0.5)
     for reading, seconds, suffix in (
         (JUST_AHEAD.value, BLOCKED_SECONDS, ""),
         (JUST_AHEAD.value, BLOCKED_SECONDS, " a second time"),
@@ -89,6 +107,13 @@ def test_warns(fresh_robot: Robot, reactions: Reactions) -> None:
         expect(
             len(_log_entries(fresh_robot, "WARN")) == warnings_before, "It logged a warning while the way was clear."
         )
+    commands = fresh_robot.see(scan(*CLEAR_PARTS, fill=math.inf), 2.0)
+    has_needless_warning = len(_log_entries(fresh_robot, "WARN")) > warnings_before
+    expect(
+        not has_needless_warning or not reactions.drives(commands),  # other checks test whether it drives
+        "It drove on past something beside it, invalid readings and phantoms, but logged a warning.",
+        fraction=0.5,
+    )
 
 
 @check(points=1, covers=("logs-status", "status"), needs=("subscribes_status",))

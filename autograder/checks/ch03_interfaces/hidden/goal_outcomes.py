@@ -121,7 +121,7 @@ def test_drive_one_at_a_time(placed_driver: Driver, draw: random.Random) -> None
     expect(is_first_goal, "After a rejected goal, a command did not belong to the first goal.", fraction=0.75)
 
 
-@check(points=2, covers=("stuck", "stop-in-time", "slow-goal"), needs=SERVER_CHECK, after=MOTION_CHECK)
+@check(points=2, covers=("stuck", "stop-in-time", "slow-goal", "driven"), needs=SERVER_CHECK, after=MOTION_CHECK)
 @hint("Remember the distance and the time of the last progress. Each further centimetre updates both.")
 @hint("If self.get_clock().now() - progress_time > PATIENCE, stop, abort, and give a reason.")
 def test_drive_stuck(placed_driver: Driver) -> None:
@@ -148,10 +148,13 @@ def test_drive_stuck(placed_driver: Driver) -> None:
         f"The robot moved {ENOUGH:.4f} m after {PUSH_AFTER} s, but the goal was given up at {seconds:.2f} s.",
         fraction=0.7,
     )
-    is_rolling_aborted = _is_aborted_rolling_back(placed_driver)
+    goal, distance = _roll_back(placed_driver)
+    is_rolling_aborted = goal.status == GoalStatus.STATUS_ABORTED
     expect(
         is_rolling_aborted, "The robot rolled back, which is not progress, but its goal was not given up.", fraction=0.7
     )
+    message = f"The robot rolled back to {distance:.2f} m, but driven is {goal.result.driven:.2f} m in the result."
+    expect(abs(goal.result.driven - distance) <= 0.15, message, fraction=0.75)
     placed_driver.is_stuck = False
     goal = placed_driver.start(1.0, SLOW)
     placed_driver.finish(goal, 6.0, f"At {SLOW} m/s, which is slower than 0.01 m/s")
@@ -253,18 +256,19 @@ def _push(driver: Driver, distance: float) -> tuple[Goal, list[ReceivedMessage]]
     return goal, driver.commands()
 
 
-def _is_aborted_rolling_back(driver: Driver) -> bool:
-    """Hold the wheels of a driving robot and roll it back; return whether its goal is aborted in time."""
+def _roll_back(driver: Driver) -> tuple[Goal, float]:
+    """Hold the wheels of a driving robot and roll it back; return its goal, and how far it is from its start, in m."""
     driver.is_stuck = False
+    x, y = driver.x, driver.y
     goal = driver.start(4.5, 0.5)
     driver.roll(goal, 1.0)
     driver.is_stuck, deadline = True, driver.seconds + PATIENCE + LATE[driver.time]
     while goal.result is None and driver.seconds < deadline:
         driver.shift(-ROLL_BACK)
         driver.roll(goal, STEP)
-    is_aborted = bool(goal.status == GoalStatus.STATUS_ABORTED)
+    distance = math.dist((x, y), (driver.x, driver.y))
     driver.abandon(goal)
-    return is_aborted
+    return goal, distance
 
 
 def _driving_seconds(commands: list[ReceivedMessage]) -> float:
