@@ -183,11 +183,14 @@ def test_warns_now_and_then(fresh_processor: Processor, draw: random.Random) -> 
     gaps = *draw.sample(GAPS, len(blind_scans)), SCAN_SECONDS, SCAN_SECONDS
     for cases, gap in zip(stretches, gaps, strict=True):
         record.send(cases, gap=gap, seconds=STRETCH_SECONDS)
+    blind_end = fresh_processor.seconds
+    record.send([Readings((1.0,))], gap=SCAN_SECONDS, seconds=2.5)
     message = (
         f"For {len(blind_scans) * STRETCH_SECONDS:.0f} s no scan had a distance, and it logged nothing at level WARN."
     )
     expect(bool(record.warnings), message)
     expect(not has_needless_warning, "It warned about a scan that keeps a finite distance.", fraction=0.5)
+    record.expect_none_after(blind_end)
     record.expect_throttled()
     record.expect_prompt()
 

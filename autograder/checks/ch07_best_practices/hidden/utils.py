@@ -260,27 +260,23 @@ def test_blind_scans_leave_no_mean(workspace: Workspace, draw: random.Random) ->
 @hint("A library returns data. Its caller decides what is logged.", "Remove print().")
 def test_prints_nothing(workspace: Workspace, draw: random.Random) -> None:
     """The utilities print nothing: the node decides what is logged, and how often."""
-    outcomes = calls.run_steps(
-        workspace,
-        UTILS,
-        calls.call("StringIO", module="io"),
-        calls.call("import_module", "sys", module="importlib"),
-        calls.call("setattr", calls.result_of(1), "stderr", calls.result_of(0), module="builtins"),
-        calls.call("simplefilter", "ignore", module="warnings"),  # a warning of numpy is not printed output
-        calls.call("disable", module="logging"),  # neither is a log record
-        calls.call("DataProcessor", 3),
-        *(
-            step
-            for case in draw_cases(scans_of(GOOD | PHANTOMS | st.sampled_from((inf, -inf))), draw, 8)
-            for step in (
-                calls.call("mask_invalid", list(case.readings), case.low, case.high),
-                calls.call("mean_distance", list(case.readings)),
-                calls.call("process", list(case.readings), case.low, case.high, on=5),
-                calls.call("average", on=5),
-            )
-        ),
-        calls.call("getvalue", on=0),
-    )
+    plan = calls.Plan()
+    stream = plan.add(calls.call("StringIO", module="io"))
+    system = plan.add(calls.call("import_module", "sys", module="importlib"))
+    plan.add(calls.call("setattr", calls.result_of(system), "stderr", calls.result_of(stream), module="builtins"))
+    plan.add(calls.call("simplefilter", "ignore", module="warnings"))  # a warning of numpy is not printed output
+    plan.add(calls.call("disable", module="logging"))  # neither is a log record
+    processor = plan.add(calls.call("DataProcessor", 3))
+    for case in draw_cases(scans_of(GOOD | PHANTOMS | st.sampled_from((inf, -inf))), draw, 8):
+        plan.add(calls.call("mask_invalid", list(case.readings), case.low, case.high))
+        plan.add(calls.call("mean_distance", list(case.readings)))
+        plan.add(calls.call("process", list(case.readings), case.low, case.high, on=processor))
+        plan.add(calls.call("average", on=processor))
+    # The utilities were imported before their output was recorded.
+    utilities = plan.add(calls.call("import_module", UTILS, module="importlib"))
+    plan.add(calls.call("reload", calls.result_of(utilities), module="importlib"))
+    plan.add(calls.call("getvalue", on=stream))
+    outcomes = calls.run_steps(workspace, UTILS, *plan.steps)
     for outcome in outcomes:
         expect(outcome.raised != "NotImplementedError", "The utilities are still to be written.")
     printed_text, errors = "".join(outcome.printed for outcome in outcomes), outcomes[-1].value

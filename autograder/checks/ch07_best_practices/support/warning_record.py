@@ -11,6 +11,7 @@ from autograder.checks.ch07_best_practices.support.contract import MAX_SILENCE, 
 from autograder.checks.ch07_best_practices.support.drawn_readings import Readings, mean_of
 from autograder.checks.ch07_best_practices.support.robot import Processor, count_logged, scan_of
 
+MAX_GAP = 0.5  # s between two scans without a distance that belong together: they come at least twice a second
 STEP = 0.1  # s between two looks at the log
 SLACK, REAL_SLACK = 0.15, 0.5  # s by which a time may differ, in lockstep and in real time
 
@@ -23,13 +24,13 @@ class WarningRecord:
 
     Attributes:
         warnings: when the processor warned.
-        blind: the times of the first and the last scan in each stretch without a distance.
+        blind: the times of the first and the last scan in each stretch of scans without a distance, among which there
+            may be others.
     """
 
     processor: Processor
     warnings: list[float] = field(default_factory=list)
     blind: list[tuple[float, float]] = field(default_factory=list)
-    _was_blind: bool = False
     _earlier_count: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -47,9 +48,9 @@ class WarningRecord:
             self._run_and_record(min(gap, STEP))
             is_blind = mean_of(case.masked) is None
             if is_blind:
-                start = self.blind.pop()[0] if self._was_blind else self.processor.seconds
-                self.blind.append((start, self.processor.seconds))
-            self._was_blind = is_blind
+                now = self.processor.seconds
+                is_next = bool(self.blind) and now - self.blind[-1][1] <= MAX_GAP + self.slack
+                self.blind.append((self.blind.pop()[0] if is_next else now, now))
             for _ in range(round(gap / STEP) - 1):
                 self._run_and_record(STEP)
 
@@ -69,6 +70,12 @@ class WarningRecord:
             silence = max(later - earlier for earlier, later in itertools.pairwise(times))
             message = f"For {silence:.1f} s, no scan had a distance, and it did not warn."
             expect(silence <= MAX_SILENCE + self.slack, message, fraction=0.5)
+
+    def expect_none_after(self, end: float) -> None:
+        """Fail the check if the processor warned more than 1 s after the last scan without a distance, at `end`."""
+        late_warnings = [time for time in self.warnings if time > end + WARN_PERIOD + self.slack]
+        message = "It warned for more than 1 s after the last scan without a distance."
+        expect(not late_warnings, message, fraction=0.5)
 
     def _run_and_record(self, seconds: float) -> None:
         """Let the processor run, and record its warnings."""

@@ -29,7 +29,7 @@ from autograder.checks.ch08_capstone.hidden.drawn_scans import distance_text
 from autograder.checks.ch08_capstone.hidden.exact_limits import OPEN, expect_exact_limits
 from autograder.checks.ch08_capstone.hidden.fallback import BodyRunner
 from autograder.checks.ch08_capstone.support import contract
-from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, PROCESSOR
+from autograder.checks.ch08_capstone.support.contract import CONTROLLER, PARAMETERS, PROCESSOR, TOLERANCE
 from autograder.checks.ch08_capstone.support.expectations import expect_driving, expect_still, expect_turning
 from autograder.checks.ch08_capstone.support.system import SharedSystem, System
 
@@ -67,7 +67,7 @@ SIDES = (
 
 @check(
     points=2,
-    covers=("drive", "ten-hertz", "stand-or-go"),
+    covers=("drive", "ten-hertz", "stand-or-go", "straight"),
     needs=("build",),
     after=("sectors", "controller"),
     doc=contract.NODES_DOC,
@@ -82,6 +82,12 @@ def test_drives(judge_driving: BodyRunner, draw: random.Random) -> None:
         start = system.seconds
         messages = system.publish_scans(scan(fill=distance), 2.0)
         expect_driving(messages.commands, f"With {distance:.2f} m of free space all around", SPEED, always=True)
+        steering = max((abs(command.message.angular.z) for command in messages.commands), default=0.0)
+        expect(
+            steering <= TOLERANCE,
+            f"With a clear way, the robot drove on and turned at {steering:.2f} rad/s: it should drive straight on.",
+            fraction=0.5,
+        )
         rate = system.harness.rate("/cmd_vel", start)
         expect(
             9.0 <= rate <= 11.0, f"{CONTROLLER} published {rate:.1f} commands a second, instead of 10.", fraction=0.5

@@ -141,7 +141,7 @@ def test_grows(workspace: Workspace, draw: random.Random) -> None:
     "them."
 )
 def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> None:
-    """package.xml and setup.py agree on version, licence and maintainer. ROS finds both packages by their markers."""
+    """package.xml and setup.py agree on name, version, licence and maintainer. ROS finds both packages."""
     package_xml = manifest.read(source_of(workspace, PACKAGE))
     installation = installed.inspect_package(workspace.install, PACKAGE)
     metadata = installation.metadata
@@ -154,6 +154,8 @@ def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> Non
     ):
         actual = metadata.get(header, "nothing")
         expect(actual == expected, f"{header.lower()}: package.xml says {expected!r}, but setup.py says {actual!r}.")
+    name = metadata.get("Name", "nothing").replace("-", "_")  # setuptools may write - for _
+    expect(name == PACKAGE, f"name: package.xml says {PACKAGE!r}, but setup.py says {name!r}.")
     packaging.expect_installs_itself(installation)
     if builds[INTERFACES] is OK:
         message = f"The ament index does not know {INTERFACES}: CMakeLists.txt does not call ament_package()."

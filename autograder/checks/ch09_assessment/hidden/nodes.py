@@ -36,7 +36,7 @@ from autograder.checks.ch09_assessment.support.contract import (
     WINDOW,
     reading,
 )
-from autograder.checks.ch09_assessment.support.robot import NANOSECONDS, Start, Types, near, refuses
+from autograder.checks.ch09_assessment.support.robot import Start, Types, near, refuses
 
 check = group("nodes")
 BUILD_CHECKS = ("installs",)
@@ -116,10 +116,11 @@ def test_average(workspace: Workspace, start: Start, draw: Random) -> None:
     readings = [round(draw.uniform(20.0, 80.0), 1) for _ in range(12)]
     with start(SMOOTHER) as harness:
         harness.expect_in_graph()
-        averages = harness.send(readings, first=7)
+        first, nanoseconds = STAMP
+        averages = harness.send(readings, first, nanoseconds=nanoseconds)
         expect_averages([message.celsius for message in averages], readings, WINDOW)
         stamps = [(message.stamp.sec, message.stamp.nanosec) for message in averages]
-        are_correct = stamps == [(second, NANOSECONDS) for second in range(7, 7 + len(readings))]
+        are_correct = stamps == [(second, nanoseconds) for second in range(first, first + len(readings))]
         expect(are_correct, "The stamp of an average is not that of the newest reading.", fraction=0.66)
         expect_series(harness, series(), WINDOW, draw, readings, fraction=0.5)
         count = len(harness.send([readings[0]] * QUEUE, apart=0.0))
