@@ -36,8 +36,8 @@ def generate_launch_description():
         Node(package='py_pkg', executable='hello', output='screen'),
     ])
 """
-# Ends only on SIGINT, with exit code 7. It waits with sigwait, because a signal handler that sets the threading.Event on
-# which the same thread begins to wait can deadlock.
+# Ends only on SIGINT, with exit code 7. It waits with sigwait, because a signal handler that sets a threading.Event can
+# deadlock if the same thread has just begun to wait for it.
 STUBBORN = """import signal
 import sys
 
