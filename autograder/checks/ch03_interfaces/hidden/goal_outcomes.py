@@ -20,8 +20,7 @@ from autograder.checks.ch03_interfaces.support.driver import COMMANDS, STEP, Dri
 
 check = group("action", doc=contract.ACTION)
 LATE = {LOCKSTEP: 0.4, REAL: 2.0}  # s beyond PATIENCE: two commands, and the harness's steps until the result
-# s by which a command may be too early or, in lockstep, too late; and m by which a distance may be wrong
-TOLERANCE = {LOCKSTEP: 0.05, REAL: 0.25}
+TOLERANCE = {LOCKSTEP: 0.05, REAL: 0.25}  # s, or m: how wrong the time of a command, or a distance, may be
 PUSH_AFTER = 0.5  # s from the start of a goal to the push
 FIRST_SPEED = 0.3  # m/s of a goal during which others are sent
 HEIGHT = 1.0  # m of height, which must not count as distance
