@@ -40,6 +40,11 @@ class Installed:
     programs: Mapping[str, str]  # the module of each program, both as named in setup.py
     classifiers: tuple[str, ...]  # as listed in setup.py
 
+    @property
+    def setup_name(self) -> str:
+        """The package's name in setup.py, or an empty string; setuptools may have written - for _."""
+        return self.metadata.get("Name", "").replace("-", "_")
+
     def read(self, name: str) -> bytes | None:
         """Return a file of share/PACKAGE, or None if it does not exist, is not a plain file or is too large."""
         return read_below(self.prefix, Path("share", self.package, name), MAX_BYTES)

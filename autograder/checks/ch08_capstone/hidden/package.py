@@ -154,7 +154,7 @@ def test_agreement(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> Non
     ):
         actual = metadata.get(header, "nothing")
         expect(actual == expected, f"{header.lower()}: package.xml says {expected!r}, but setup.py says {actual!r}.")
-    name = metadata.get("Name", "nothing").replace("-", "_")  # setuptools may write - for _
+    name = installation.setup_name or "nothing"
     expect(name == PACKAGE, f"name: package.xml says {PACKAGE!r}, but setup.py says {name!r}.")
     packaging.expect_installs_itself(installation)
     if builds[INTERFACES] is OK:

@@ -81,10 +81,8 @@ def test_dependencies(workspace: Workspace, builds: Mapping[str, Diagnosis]) -> 
     packaging.expect_same_facts(installation, package_manifest, fraction=0.5)
     packaging.expect_installs_itself(installation)
     packaging.expect_pytest(workspace, installation, fraction=0.5)
-    metadata_name = installation.metadata.get("Name", "").replace("-", "_")  # setuptools may write - for _
-    expect(
-        metadata_name == PACKAGE, f"The name is {metadata_name} in setup.py and {PACKAGE} in package.xml.", fraction=0.5
-    )
+    name = installation.setup_name
+    expect(name == PACKAGE, f"The name is {name} in setup.py and {PACKAGE} in package.xml.", fraction=0.5)
     modules = {module.rpartition(".")[2] for module in installation.modules}
     absent_names = [name for name in PROGRAMS if name not in modules]
     message = (
