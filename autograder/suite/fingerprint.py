@@ -20,7 +20,7 @@ from autograder import course_paths
 # The version of the grader and the simulator, which the checks of all chapters use. Raise it by one with each change
 # that can give a submission another mark with the same seed, or another reason for its mark: see CONTRIBUTING.md.
 # `--resume` grades submissions again whose results have another version.
-GRADER_VERSION = 10
+GRADER_VERSION = 11
 
 # Parts of the autograder that no grading reads.
 NOT_READ = frozenset(

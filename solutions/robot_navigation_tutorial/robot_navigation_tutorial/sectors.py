@@ -25,7 +25,7 @@ def nearest(scan, middle, half_angle):
 
     scan is a sensor_msgs/LaserScan. Beam i has the bearing angle_min + i * angle_increment.
     It belongs to the sector when this bearing is at most half_angle from middle, the
-    shorter way round. Its reading counts by REP 117:
+    shorter way round. REP 117 says what its reading means:
 
     nan                               invalid, as if the beam were not there
     +inf                              nothing within range_max

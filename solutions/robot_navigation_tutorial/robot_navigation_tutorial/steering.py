@@ -15,7 +15,7 @@
 """Which way to go: the part of the navigation controller without ROS."""
 
 STRAIGHT, LEFT, RIGHT = 0, 1, -1
-MARGIN = 0.1  # m beyond the safety distance at which a turn ends
+MARGIN = 0.1  # m: a turn ends this far beyond the safety distance
 
 
 def choose_turn(clearance, safety_distance, turn):

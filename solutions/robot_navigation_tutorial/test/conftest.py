@@ -47,7 +47,7 @@ class World:
 
 @pytest.fixture
 def world():
-    """Give the test a world whose domain no other test process uses."""
+    """Give the test a world in a domain that other test processes are unlikely to use."""
     context = Context()
     rclpy.init(context=context, domain_id=1 + os.getpid() % 100)
     here = World(context)

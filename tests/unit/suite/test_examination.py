@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import random
 import shutil
+from collections import Counter
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -20,6 +22,8 @@ from autograder.ros import environment
 from autograder.suite import CheckFailed
 
 ALL_PASS = Report(None, 0, Claims({f"test::{number}": ClaimedOutcome.PASSED for number in range(8)}), 0, "")
+
+NONE_PASS = Report(None, 1, Claims({f"test::{number}": ClaimedOutcome.FAILED for number in range(8)}), 0, "")
 
 
 @pytest.fixture
@@ -170,3 +174,34 @@ def test_tests_that_object_to_right_versions_by_chance_earn_no_line(
     )
     with pytest.raises(CheckFailed, match="failures on faulty ones prove nothing"):
         examination.expect_detection("slow", "it is a line.")
+
+
+@pytest.mark.parametrize(("name", "failures", "counts"), [(GUARD, 1, False), (GUARD, 2, True), (LIMITS, 1, True)])
+def test_a_failure_on_a_right_version_counts_the_second_time_if_the_tests_have_deadlines(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, name: str, failures: int, counts: bool
+) -> None:
+    made: Counter[str] = Counter()
+
+    def run(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
+        made.update(repr(order.version) for order in more)
+        is_late = [not order.is_public and made[repr(order.version)] <= failures for order in more]
+        return [(NONE_PASS if late else ALL_PASS).closed(frozenset()) for late in is_late]
+
+    monkeypatch.setattr(student_test_runs, "run", run)
+    examination = Examination(workspace, 1, frozenset((f"{name[5:-3]}_right",)))
+    with pytest.raises(CheckFailed, match="written differently") if counts else nullcontext():
+        examination.expect_passed_on_correct_versions(name)
+
+
+@pytest.mark.parametrize(("name", "passes"), [(GUARD, True), (LAUNCH, True), (LIMITS, False)])
+def test_a_failure_on_the_given_package_counts_the_second_time_if_the_tests_have_deadlines(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, name: str, passes: bool
+) -> None:
+    made: Counter[tuple[str, ...]] = Counter()
+
+    def run(workspace: Workspace, source: Source, more: Sequence[TestRun]) -> list[Report]:
+        made.update(order.files for order in more)
+        return [NONE_PASS if made[order.files] == 1 else ALL_PASS for order in more]
+
+    monkeypatch.setattr(student_test_runs, "run", run)
+    assert Examination(workspace, 1, frozenset((f"{name[5:-3]}_pass",))).trial[name].passed is passes

@@ -52,7 +52,7 @@ class StatusPublisher(Node):
 
     def __init__(self, **kwargs):
         """
-        Name the node status_publisher; create its endpoints and its timer.
+        Name the node status_publisher; create its publisher, subscriptions, service and timer.
 
         The publisher uses STATUS_QOS, the subscriptions a queue of 10. The timer calls
         publish_status every status_period. At the end, log at level info 'Status of NAME every

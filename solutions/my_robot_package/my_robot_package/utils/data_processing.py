@@ -27,8 +27,8 @@ def mask_invalid(ranges: Sequence[float], range_min: float, range_max: float) ->
 
     The result is as long as `ranges`: a reading's place determines its bearing, so none may
     be dropped. In REP 117, +inf means no return and -inf too near to measure, so both
-    stay; a finite number outside range_min to range_max is a phantom. All distances are in
-    metres.
+    stay. A finite number outside range_min to range_max is not a measurement. All distances
+    are in metres.
     """
     return [
         reading if math.isinf(reading) or range_min <= reading <= range_max else math.nan

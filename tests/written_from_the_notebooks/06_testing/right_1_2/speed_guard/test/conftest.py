@@ -101,7 +101,7 @@ class Robot(Node):
 
 @pytest.fixture
 def domain():
-    """Return a domain that hardly any other test process uses at the same time."""
+    """Return a domain that other test processes are unlikely to use at the same time."""
     return 1 + os.getpid() % 100
 
 

@@ -65,7 +65,7 @@ class StatusPublisher(Node):
     """The robot_status and the service check_trip."""
 
     def __init__(self, **kwargs):
-        """Name the node; create its endpoints and its timer."""
+        """Name the node; create its publisher, subscriptions, service and timer."""
         super().__init__('status_publisher', **kwargs)
         self.robot_name, period = self.read_parameters()
         self.battery = None

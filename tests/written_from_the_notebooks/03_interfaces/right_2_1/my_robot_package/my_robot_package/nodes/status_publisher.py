@@ -63,7 +63,7 @@ class StatusPublisher(Node):
     """Publishes the robot's status at a steady rate, and judges trips by the battery."""
 
     def __init__(self, **kwargs):
-        """Name the node status_publisher; create its endpoints and its timer."""
+        """Name the node status_publisher; create its publisher, subscriptions, service and timer."""
         super().__init__('status_publisher', **kwargs)
         self.battery = None
         self.joints = None

@@ -70,7 +70,7 @@ class StatusPublisher(Node):
     """Publishes robot_status, and serves check_trip."""
 
     def __init__(self, **kwargs):
-        """Name the node status_publisher; create its endpoints and its timer."""
+        """Name the node status_publisher; create its publisher, subscriptions, service and timer."""
         super().__init__('status_publisher', **kwargs)
         self.robot_name, self.period = self.read_parameters()
         self.battery, self.joints = None, None

@@ -79,7 +79,7 @@ class ConfiguredNode(Node):
         self.watchdog.reset()
 
     def go_blind(self):
-        """Forget the last reading: it is too old to drive by."""
+        """Forget the last reading: it is too old to rely on."""
         self.distance = None
 
     def battery_callback(self, battery):
