@@ -27,7 +27,7 @@ NODES = ('sensor_processor', 'navigation_controller', 'status_monitor')
 
 
 def generate_launch_description():
-    """Return the nodes, with the parameters file and the clock that the arguments name."""
+    """Return the two arguments, and the three nodes that use their values."""
     config = Path(get_package_share_directory(PACKAGE)) / 'config' / 'navigation.yaml'
     params_file = LaunchConfiguration('params_file')
     use_sim_time = LaunchConfiguration('use_sim_time')

@@ -107,7 +107,7 @@ def test_commands_do_not_keep_a_distance_young(robot, guard):
 
 
 def test_the_motors_stop_once_when_the_planner_falls_silent(robot, guard):
-    """One command of zeros follows the last command, and none comes before the first."""
+    """One command of zeros follows the last command; before the first, nothing is published."""
     guard(timeout=HASTY)
     robot.spin(2 * HASTY)
     assert robot.commands == []

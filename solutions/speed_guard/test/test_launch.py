@@ -38,7 +38,7 @@ def launched(domain):
 @pytest.mark.launch(fixture=launched)
 def test_the_launched_guard_has_its_name_and_configuration(robot):
     """At 0.4 m, the configured guard lets the robot drive slowly; the defaults would stop it."""
-    robot.meet(seconds=10.0)  # a program takes its time to start
+    robot.meet(seconds=10.0)  # a program needs time to start
     robot.until(lambda: ('speed_guard', '/') in robot.get_node_names_and_namespaces())
     # Its timeout is short: on a busy machine, a distance may be too old, and the answer is 0.
     answers = [robot.see(0.4) or robot.ask(0.8).linear.x for _ in range(20)]

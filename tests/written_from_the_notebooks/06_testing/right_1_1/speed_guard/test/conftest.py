@@ -26,7 +26,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Range
 
-DEADLINE = 5.0  # s: only a broken node makes a test wait so long
+DEADLINE = 5.0  # s: only a broken node makes a test wait this long
 
 
 class Robot(Node):

@@ -38,7 +38,7 @@ def launched(domain):
 @pytest.mark.launch(fixture=launched)
 def test_the_launched_guard_has_its_name_and_configuration(robot):
     """It brakes from 0.8 m to 0.3 m; with the defaults it would stand at 0.4 m."""
-    robot.meet(seconds=10.0)  # a program takes its time to start
+    robot.meet(seconds=10.0)  # a program needs time to start
     robot.until(lambda: ('speed_guard', '/') in robot.get_node_names_and_namespaces())
     for distance, speed in ((0.4, 0.16), (0.7, 0.64)):
         fastest = 0.0

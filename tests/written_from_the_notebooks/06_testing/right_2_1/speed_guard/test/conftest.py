@@ -29,7 +29,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Range
 
 TESTS = itertools.count()
-DEADLINE = 5.0  # s: only a broken node makes a test wait so long
+DEADLINE = 5.0  # s: only a broken node makes a test wait this long
 
 
 class Robot(Node):
