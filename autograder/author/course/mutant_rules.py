@@ -63,17 +63,19 @@ def unproven_checks(folder: Path, checks: Collection[str]) -> Iterator[Finding]:
 
 
 def unknown_records(folder: Path) -> Iterator[Finding]:
-    """Yield a finding for each record of a mutant that `mutants.yaml` does not define.
+    """Yield a finding for the records of mutants that `mutants.yaml` does not define, at the first of them.
 
-    This is no reason to refuse a verification, which can remove the record.
+    This is no reason to refuse a verification, which can remove the records.
     """
     mutants, snapshot = _read_mutants(folder), _read_snapshot(folder)
     ids = [str(entry.get("id")) for _, entry in _entries(mutants)]
     command = f"autograder verify --assignment {folder.name.removeprefix('ch')} --record"
-    for name in snapshot.data if not mutants.findings else ():
-        if name not in ids:
-            message = f"{MUTANTS} has no mutant `{name}`: correct its `id` there, or remove this record by `{command}`"
-            yield snapshot.finding((str(name),), message)
+    unknown = [str(name) for name in snapshot.data if name not in ids] if not mutants.findings else []
+    if unknown:
+        names = ", ".join(f"`{name}`" for name in unknown)
+        records = "this record" if len(unknown) == 1 else "these records"
+        message = f"{MUTANTS} has no mutant {names}: correct its `id` there, or remove {records} by `{command}`"
+        yield snapshot.finding((unknown[0],), message)
 
 
 def _read_snapshot(folder: Path) -> YamlFile:

@@ -73,3 +73,13 @@ def test_a_record_of_an_unknown_mutant_does_not_prevent_the_verification_that_re
         "checks/ch01_small/mutants.snapshot.yaml:2: mutants.yaml has no mutant `lord`: correct its `id` there, or "
         "remove this record by `autograder verify --assignment 01_small --record`"
     ]
+
+
+def test_records_of_several_unknown_mutants_are_one_finding(folder: Path) -> None:
+    (folder / "mutants.snapshot.yaml").write_text("loud: [quiet]\nlord: [quiet]\ncloud: [quiet]\n")
+    assert found(folder, "{find: on guard, replace: on duty}") == []
+    (finding,) = unknown_records(folder)
+    assert str(finding).endswith(
+        "snapshot.yaml:2: mutants.yaml has no mutant `lord`, `cloud`: correct its `id` there, or remove these records "
+        "by `autograder verify --assignment 01_small --record`"
+    )
