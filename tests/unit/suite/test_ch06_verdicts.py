@@ -15,7 +15,7 @@ from autograder.checks.ch06_testing.support.assertions import (
     expect_passed,
     is_usable,
 )
-from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, LIMITS, MIN_TESTS
+from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, GUARD, LIMITS, MIN_TESTS
 from autograder.harness import Workspace
 from autograder.probes.colcon_test import expect_ended
 from autograder.probes.student_test_reports import ClaimedOutcome, Claims, Report, Source
@@ -93,6 +93,13 @@ def test_tests_that_do_not_pass_on_the_given_package_are_named_and_the_others_ar
 def test_enough_passing_tests_are_usable() -> None:
     expect_passed(LIMITS, ENOUGH)
     assert is_usable(LIMITS, ENOUGH)
+
+
+def test_the_tests_of_the_node_may_be_unwritten_in_their_fixtures() -> None:
+    unfinished = report(BAD, message="NotImplementedError: this part of the exercise is still to be written")
+    assert describe_failure(GUARD, unfinished, "here") == (
+        "A part of test_guard.py or conftest.py is still to be written: test_0 raises NotImplementedError."
+    )
 
 
 def test_only_known_names_of_a_closed_report_are_shown() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.checking import CheckFailed, expect
 from autograder.checking.probes import student_test_reports
-from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, MIN_TESTS, PACKAGE
+from autograder.checks.ch06_testing.support.contract import GIVEN_TESTS, LIMITS, MIN_TESTS, PACKAGE
 from autograder.checks.ch06_testing.support.sleeping import sleeps
 
 UNFINISHED = "still to be written"
@@ -58,7 +58,8 @@ def describe_failure(name: str, report: student_test_reports.Report, where: str)
             return f"{test if test != student_test_reports.UNNAMED else 'One test'} in {name} fails {where}."
         message = report.claims.messages[report.failed[0]]
         if UNFINISHED in message:
-            return f"{name} is still to be written: {test} raises NotImplementedError."
+            files = name if name == LIMITS else f"A part of {name} or conftest.py"
+            return f"{files} is still to be written: {test} raises NotImplementedError."
         count = f"{len(report.failed)} of {len(report.claims.verdicts)} tests in {name} fail"
         return f"{count} {where}: {test}{f': {message}' if message else ''}"
     if report.status in (0, 5):
