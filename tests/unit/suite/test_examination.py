@@ -176,7 +176,6 @@ def test_tests_that_object_to_right_versions_by_chance_earn_no_line(
         examination.expect_detection("slow", "it is a line.")
 
 
-@pytest.mark.promise("If one of them fails on a correct version, it runs again, and the grader uses the second run.")
 @pytest.mark.parametrize(("name", "failures", "counts"), [(GUARD, 1, False), (GUARD, 2, True), (LIMITS, 1, True)])
 def test_a_failure_on_a_right_version_counts_the_second_time_if_the_tests_have_deadlines(
     workspace: Workspace, monkeypatch: pytest.MonkeyPatch, name: str, failures: int, counts: bool
